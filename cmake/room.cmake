@@ -1,0 +1,53 @@
+# Compile options shared by everything of ours, and the helpers that make a room (a library target) and its tests.
+
+add_library(lodestone_options INTERFACE)
+target_compile_options(lodestone_options INTERFACE
+  -Wall -Wextra -Wshadow -Wconversion
+  $<$<BOOL:${LODESTONE_WERROR}>:-Werror>
+  # The same bytes on every machine: no fused multiply-add unless it is written down.
+  -ffp-contract=off)
+target_include_directories(lodestone_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
+
+# lodestone_room(name DEPENDS room... [LIBRARIES target...]): target lodestone_<name> from lodestone/<name>/*.cpp.
+function(lodestone_room name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;LIBRARIES;DEFINITIONS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
+  list(FILTER headers EXCLUDE REGEX "_detail\\.h$")
+  set(target lodestone_${name})
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    set(scope PUBLIC)
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:lodestone_options> ${ARG_LIBRARIES})
+    target_compile_definitions(${target} PRIVATE ${ARG_DEFINITIONS})
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  add_library(lodestone::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(${target} ${scope}
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(${target} ${scope} cxx_std_20)
+  foreach(room IN LISTS ARG_DEPENDS)
+    target_link_libraries(${target} ${scope} lodestone_${room})
+  endforeach()
+  foreach(header IN LISTS headers)
+    install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lodestone/${name})
+  endforeach()
+  install(TARGETS ${target} EXPORT lodestone-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  set_property(GLOBAL APPEND PROPERTY LODESTONE_ROOMS ${name})
+endfunction()
+
+# lodestone_tests(room [LIBRARIES target...]): executable <room>_tests from tests/<room>/*_test.cpp, label "unit".
+function(lodestone_tests room)
+  cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${room}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(${room}_tests ${sources})
+  target_link_libraries(${room}_tests PRIVATE lodestone_options lodestone_${room} lodestone_test_support GTest::gtest
+                        ${ARG_LIBRARIES})
+  gtest_discover_tests(${room}_tests TEST_PREFIX "${room}." PROPERTIES LABELS unit DISCOVERY_TIMEOUT 60)
+endfunction()

@@ -1,0 +1,199 @@
+#include "lodestone/base/file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+namespace lodestone {
+
+namespace {
+
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+
+std::string reason(int error_number) { return std::generic_category().message(error_number); }
+
+// Writes everything; returns 0 or the error number.
+int write_all(int descriptor, const char* data, std::size_t size) {
+  while (size > 0) {
+    const ssize_t n = ::write(descriptor, data, size);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return errno;
+    data += n;
+    size -= static_cast<std::size_t>(n);
+  }
+  return 0;
+}
+
+}  // namespace
+
+Result<InputFile> InputFile::open(const std::filesystem::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) {
+    const int error_number = errno;
+    return fail(ErrorCode::cannot_read, error_number == ENOENT ? "no such file" : reason(error_number), path.string(),
+                error_number == ENOENT ? "is the name spelt right?" : "");
+  }
+  InputFile file;
+  file.descriptor_ = descriptor;
+  file.path_ = path;
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) return fail(ErrorCode::cannot_read, reason(errno), path.string());
+  if (S_ISDIR(status.st_mode)) {
+    return fail(ErrorCode::cannot_read, "is a directory", path.string(), "name a file in it");
+  }
+  file.size_ = static_cast<std::uint64_t>(status.st_size);
+  return file;
+}
+
+InputFile::InputFile(InputFile&& other) noexcept { *this = std::move(other); }
+
+InputFile& InputFile::operator=(InputFile&& other) noexcept {
+  if (this != &other) {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    path_ = std::move(other.path_);
+    descriptor_ = std::exchange(other.descriptor_, -1);
+    size_ = other.size_;
+    position_ = other.position_;
+  }
+  return *this;
+}
+
+InputFile::~InputFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Result<std::size_t> InputFile::read(std::span<std::byte> into) {
+  std::size_t got = 0;
+  while (got < into.size()) {
+    const ssize_t n = ::read(descriptor_, into.data() + got, into.size() - got);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return fail(ErrorCode::cannot_read, reason(errno), path_.string());
+    if (n == 0) break;
+    got += static_cast<std::size_t>(n);
+  }
+  position_ += got;
+  return got;
+}
+
+Result<void> InputFile::seek(std::uint64_t offset) {
+  if (::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0) {
+    return fail(ErrorCode::cannot_read, reason(errno), path_.string());
+  }
+  position_ = offset;
+  return {};
+}
+
+Result<std::string> read_file(const std::filesystem::path& path) {
+  Result<InputFile> file = InputFile::open(path);
+  if (!file) return fail(file.error());
+  std::string bytes;
+  std::size_t want = static_cast<std::size_t>(file->size()) + 1;  // one more, so that the end shows in one read
+  while (true) {
+    const std::size_t old = bytes.size();
+    bytes.resize(old + want);
+    const Result<std::size_t> got = file->read(std::as_writable_bytes(std::span(bytes).subspan(old)));
+    if (!got) return fail(got.error());
+    bytes.resize(old + *got);
+    if (*got < want) return bytes;
+    want = kBufferBytes;
+  }
+}
+
+Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
+  const auto cannot = [&](const std::string& why, const std::string& remedy = {}) {
+    return fail(ErrorCode::cannot_write, why, path.string(), remedy);
+  };
+  std::error_code ignored;
+  if (path.filename().empty() || std::filesystem::is_directory(path, ignored)) {
+    return cannot("is a directory", "name a file in it");
+  }
+  std::filesystem::path folder = path.parent_path();
+  if (folder.empty()) folder = ".";
+  OutputFile file;
+  file.path_ = path;
+#ifdef O_TMPFILE
+  file.descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+#endif
+  if (file.descriptor_ < 0) {  // no nameless files here: a hidden one, removed unless committed
+    file.hidden_ = folder / fmt::format(".{}.{}.tmp", path.filename().string(), ::getpid());
+    file.descriptor_ = ::open(file.hidden_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  }
+  if (file.descriptor_ < 0) {
+    const int error_number = errno;
+    file.hidden_.clear();
+    return cannot(error_number == ENOENT ? "its folder does not exist" : reason(error_number),
+                  error_number == ENOENT ? "make the folder first" : "");
+  }
+  file.buffer_.reserve(kBufferBytes);
+  return file;
+}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept { *this = std::move(other); }
+
+OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
+  if (this != &other) {
+    discard();
+    path_ = std::move(other.path_);
+    hidden_ = std::exchange(other.hidden_, {});
+    descriptor_ = std::exchange(other.descriptor_, -1);
+    error_number_ = other.error_number_;
+    written_ = other.written_;
+    buffer_ = std::move(other.buffer_);
+  }
+  return *this;
+}
+
+OutputFile::~OutputFile() { discard(); }
+
+void OutputFile::discard() noexcept {
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  if (!hidden_.empty()) ::unlink(hidden_.c_str());
+}
+
+void OutputFile::write(std::span<const std::byte> bytes) {
+  write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+void OutputFile::write(std::string_view text) {
+  written_ += text.size();
+  if (error_number_ != 0) return;
+  if (buffer_.size() + text.size() > kBufferBytes) flush();
+  if (text.size() >= kBufferBytes) {
+    if (error_number_ == 0) error_number_ = write_all(descriptor_, text.data(), text.size());
+  } else {
+    buffer_.append(text);
+  }
+}
+
+void OutputFile::flush() {
+  if (error_number_ == 0) error_number_ = write_all(descriptor_, buffer_.data(), buffer_.size());
+  buffer_.clear();
+}
+
+Result<void> OutputFile::commit() {
+  flush();
+  const auto cannot = [&](int error_number) {
+    return fail(ErrorCode::cannot_write, reason(error_number), path_.string(),
+                error_number == ENOSPC ? "free some space; nothing was left behind" : "nothing was left behind");
+  };
+  if (error_number_ != 0) return cannot(error_number_);
+  if (hidden_.empty()) {  // give the nameless file a name beside its place, then rename over the old one
+    const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
+    std::filesystem::path name = folder / fmt::format(".{}.{}.tmp", path_.filename().string(), ::getpid());
+    const std::string self = fmt::format("/proc/self/fd/{}", descriptor_);
+    if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) return cannot(errno);
+    hidden_ = std::move(name);
+  }
+  if (::close(std::exchange(descriptor_, -1)) != 0) return cannot(errno);
+  if (::rename(hidden_.c_str(), path_.c_str()) != 0) return cannot(errno);
+  hidden_.clear();
+  return {};
+}
+
+}  // namespace lodestone

@@ -1,0 +1,78 @@
+// Files: reading with the real size known, and writing so that a failed or interrupted run leaves nothing behind.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "lodestone/base/result.h"
+
+namespace lodestone {
+
+/// A regular file (or pipe) opened for reading in order. Move-only.
+class InputFile {
+ public:
+  /// Errors: cannot_read (missing, a directory, no permission), with a line for the user.
+  static Result<InputFile> open(const std::filesystem::path& path);
+  InputFile(InputFile&& other) noexcept;
+  InputFile& operator=(InputFile&& other) noexcept;
+  ~InputFile();
+
+  /// Bytes of the whole file as the system tells it.
+  std::uint64_t size() const { return size_; }
+  std::uint64_t position() const { return position_; }
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Reads up to `into.size()` bytes; fewer only at the end of the file. Errors: cannot_read.
+  Result<std::size_t> read(std::span<std::byte> into);
+  /// Moves to a byte offset from the start. Errors: cannot_read.
+  Result<void> seek(std::uint64_t offset);
+
+ private:
+  InputFile() = default;
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0;
+  std::uint64_t position_ = 0;
+};
+
+/// The whole file. Errors: cannot_read.
+Result<std::string> read_file(const std::filesystem::path& path);
+
+/// An output that appears under its name whole, or not at all: written as a nameless (or, where the file system has
+/// none, a hidden) file in the same folder and renamed by commit(). Without commit() an existing file keeps its bytes.
+class OutputFile {
+ public:
+  /// Errors: cannot_write (no such folder, a directory in the way, no permission).
+  static Result<OutputFile> create(const std::filesystem::path& path);
+  OutputFile(OutputFile&& other) noexcept;
+  OutputFile& operator=(OutputFile&& other) noexcept;
+  ~OutputFile();
+
+  /// Appends, buffered. Errors (such as a full disk) are kept and told by commit(); writing after one does nothing.
+  void write(std::span<const std::byte> bytes);
+  void write(std::string_view text);
+  std::uint64_t size() const { return written_; }
+  const std::filesystem::path& path() const { return path_; }
+  /// True once a write has failed: long writers may stop early.
+  bool failed() const { return error_number_ != 0; }
+
+  /// Flushes and puts the file under its name. Errors: cannot_write.
+  Result<void> commit();
+
+ private:
+  OutputFile() = default;
+  void flush();
+  void discard() noexcept;
+  std::filesystem::path path_;
+  std::filesystem::path hidden_;  // empty while the file has no name
+  int descriptor_ = -1;
+  int error_number_ = 0;
+  std::uint64_t written_ = 0;
+  std::string buffer_;
+};
+
+}  // namespace lodestone

@@ -1,0 +1,53 @@
+#include "lodestone/base/units.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace lodestone {
+
+Result<Length> parse_length(std::string_view text) {
+  const std::string copy(text);
+  char* end = nullptr;
+  const double number = std::strtod(copy.c_str(), &end);
+  const std::string_view unit(end);
+  const auto bad = [&](std::string_view why) {
+    return fail(ErrorCode::bad_argument, fmt::format("'{}' {}", text, why), {},
+                "write 0.001 or 0.1% (of the diagonal) or a length such as 2mm, 0.5m");
+  };
+  if (end == copy.c_str()) return bad("is not a length");
+  if (!std::isfinite(number) || number < 0) return bad("is not a finite length of at least 0");
+  struct Unit {
+    std::string_view name;
+    double metres;
+  };
+  constexpr Unit kUnits[] = {{"um", 1e-6}, {"mm", 1e-3},    {"cm", 1e-2},   {"dm", 0.1},
+                             {"m", 1.0},   {"km", 1000.0}, {"in", 0.0254}, {"ft", 0.3048}};
+  if (unit.empty()) return Length{number, Length::Kind::relative};
+  if (unit == "%") return Length{number / 100.0, Length::Kind::relative};
+  for (const Unit& u : kUnits) {
+    if (unit == u.name) return Length{number * u.metres, Length::Kind::metres};
+  }
+  return bad("has a unit we don't know");
+}
+
+std::string with_separators(std::uint64_t value) {
+  std::string digits = std::to_string(value);
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, 1, ',');
+  return digits;
+}
+
+std::string human_bytes(std::uint64_t bytes) {
+  if (bytes < 1000) return fmt::format("{} B", bytes);
+  constexpr const char* kNames[] = {"kB", "MB", "GB", "TB", "PB", "EB"};
+  double value = static_cast<double>(bytes) / 1000.0;
+  std::size_t i = 0;
+  while (value >= 999.5 && i + 1 < std::size(kNames)) {
+    value /= 1000.0;
+    ++i;
+  }
+  return fmt::format("{:.{}f} {}", value, value < 9.95 ? 1 : 0, kNames[i]);
+}
+
+}  // namespace lodestone

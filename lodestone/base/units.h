@@ -1,0 +1,27 @@
+// Lengths as users write them, and numbers as people read them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "lodestone/base/result.h"
+
+namespace lodestone {
+
+/// A length as given on a command line. Relative: a fraction of the bounding box's diagonal ("0.001", "0.1%").
+/// Absolute: metres ("2mm" = 0.002), to be turned into model units by the model's own unit.
+struct Length {
+  double value = 0;
+  enum class Kind { relative, metres } kind = Kind::relative;
+};
+
+/// Reads "0.001", "0.1%", "2mm", "0.5m", "3cm", "1km", "1in", "2ft". Must be finite and not negative.
+Result<Length> parse_length(std::string_view text);
+
+/// "1,234,567"
+std::string with_separators(std::uint64_t value);
+/// "3.4 MB" (powers of 1000)
+std::string human_bytes(std::uint64_t bytes);
+
+}  // namespace lodestone

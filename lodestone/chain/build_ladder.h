@@ -1,0 +1,69 @@
+// The main job: a model in, a ladder of levels out, each measured against the original, targets met by measurement.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lodestone/base/result.h"
+#include "lodestone/base/task.h"
+#include "lodestone/core/level.h"
+#include "lodestone/measure/distance.h"
+#include "lodestone/measure/screen.h"
+#include "lodestone/simplify/edge_collapse.h"
+
+namespace lodestone::chain {
+
+/// What the coarser levels shall be. At most one of `ratios`, `triangles`, `errors` is filled; when none is, `levels` rules:
+/// level 0 and levels - 1 coarser ones, each with half the triangles of the one before.
+struct LadderOptions {
+  std::size_t levels = 5;               ///< with level 0; at least 2
+  std::vector<double> ratios;           ///< share of the drawn triangles kept, (0, 1), one a coarser level, falling
+  std::vector<std::size_t> triangles;   ///< drawn triangles, one a coarser level, falling
+  std::vector<double> errors;           ///< measured maximum allowed, model units, one a coarser level, rising:
+                                        ///< the coarsest mesh found within it, by bisection over one run's log
+  bool keep_border = false;             ///< open borders stay as they are
+  measure::DistanceOptions distance;    ///< samples and seed of the measurement
+};
+
+/// A level that is not what was asked.
+struct Shortfall {
+  std::size_t level = 0;
+  std::string reason;  ///< plain words: what was asked, what was got, what was locked, which option frees it
+};
+
+struct LadderResult {
+  Ladder ladder;
+  std::vector<Shortfall> shortfalls;  ///< empty = every target was reached
+  double simplify_seconds = 0, measure_seconds = 0;
+};
+
+/// Runs edge collapse once on every mesh, merges the collapses by error times the largest instance scale, cuts the levels
+/// from that one record and measures each in world space. A ladder that can't shrink further ends early, with a shortfall.
+/// Errors: bad_argument, empty (nothing drawn), cancelled.
+Result<LadderResult> build_ladder(Model original, const LadderOptions& options = {}, Task task = {});
+
+struct SimplifyModelOptions {
+  std::size_t target_triangles = 0;  ///< drawn triangles; 0 = no count target
+  double max_error = 0;              ///< measured maximum, model units; 0 = no error target
+  bool keep_border = false;
+  measure::DistanceOptions distance;
+};
+
+struct SimplifyModelResult {
+  Level level;
+  simplify::StopReason stop = simplify::StopReason::no_legal_collapse;
+  simplify::LockCounts locked;
+  std::string shortfall;  ///< empty = the target was reached
+  double simplify_seconds = 0, measure_seconds = 0;
+};
+
+/// One level instead of a ladder. Errors: bad_argument (no target or both), empty, cancelled.
+Result<SimplifyModelResult> simplify_model(const Model& original, const SimplifyModelOptions& options, Task task = {});
+
+/// MSFT_screencoverage for each instance of the original and each level: the share of the screen that the instance's
+/// bounding sphere covers at the next level's switch distance; the last 0.
+std::vector<std::vector<double>> screen_coverages(const Ladder& ladder, const measure::View& view = {});
+
+}  // namespace lodestone::chain

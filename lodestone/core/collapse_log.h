@@ -1,0 +1,57 @@
+// CollapseLog: an edge-collapse run as a flat record. Any prefix can be replayed, and every step undone.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lodestone/base/result.h"
+#include "lodestone/base/task.h"
+#include "lodestone/core/mesh.h"
+
+namespace lodestone {
+
+/// One collapse: vertex `removed` merges into `kept`, which moves to `position`. 48 bytes.
+struct Collapse {
+  std::uint32_t kept = 0, removed = 0;  ///< vertices of the original mesh
+  Vec3f position;                       ///< of `kept` from now on, relative to Mesh::offset
+  Vec3f kept_before;                    ///< of `kept` until now: what undoing needs (`removed` stays where it was)
+  float error = 0;                      ///< estimated, model units, never falling along the log
+  std::uint32_t first_wedge = 0;        ///< start of this collapse's entries in CollapseLog::wedges
+  std::uint32_t faces = 0;              ///< triangles that vanish with it
+};
+
+/// A wedge of the removed vertex and the wedge of the kept one that its corners use from now on. 12 bytes.
+/// `blend` is how far the kept wedge's attributes move towards the removed one's, 0 to 1; an entry with removed ==
+/// kNone ends nothing and moves nothing.
+struct WedgeMerge {
+  std::uint32_t kept = 0, removed = 0;
+  float blend = 0;
+};
+
+/// Order and content depend on the input mesh and the method's options, never on the target.
+struct CollapseLog {
+  std::vector<Collapse> collapses;
+  std::vector<WedgeMerge> wedges;
+  std::uint32_t start_triangles = 0;  ///< triangles before the first collapse (degenerate and doubled ones left out)
+  /// Input triangles that take no part (degenerate or doubled in the same direction), ascending.
+  std::vector<std::uint32_t> dropped;
+
+  /// Triangles left after the first `count` collapses. O(count).
+  std::size_t triangles_after(std::size_t count) const;
+  /// The shortest prefix that leaves at most `triangles`; all collapses if none does. O(collapses).
+  std::size_t prefix_for(std::size_t triangles) const;
+};
+
+/// The mesh after a prefix.
+struct ReplayResult {
+  Mesh mesh;                          ///< compact: vertices and wedges in ascending order of their original index
+  std::vector<std::uint32_t> origin;  ///< for each triangle, the input triangle that it descends from
+};
+
+/// Applies the first `count` collapses of `log` to `mesh`, the mesh that the log was made from. Attributes: blended ones
+/// interpolated, normals and tangents unit again, weights pruned to the sets there are and summing to one.
+/// O(mesh + count). Errors: cancelled.
+Result<ReplayResult> replay(const Mesh& mesh, const CollapseLog& log, std::size_t count, Task task = {});
+
+}  // namespace lodestone
