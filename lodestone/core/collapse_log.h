@@ -11,22 +11,23 @@
 
 namespace lodestone {
 
-/// One collapse: vertex `removed` merges into `kept`, which moves to `position`. 48 bytes.
+/// One collapse: vertex `removed` merges into `kept`, which moves to `position`. 44 bytes.
 struct Collapse {
   std::uint32_t kept = 0, removed = 0;  ///< vertices of the original mesh
   Vec3f position;                       ///< of `kept` from now on, relative to Mesh::offset
   Vec3f kept_before;                    ///< of `kept` until now: what undoing needs (`removed` stays where it was)
   float error = 0;                      ///< estimated, model units, never falling along the log
-  std::uint32_t first_wedge = 0;        ///< start of this collapse's entries in CollapseLog::wedges
+  std::uint32_t first_wedge = 0;        ///< start of this collapse's entries in CollapseLog::wedges (none for a mesh
+                                        ///< without wedges of its own and attributes)
   std::uint32_t faces = 0;              ///< triangles that vanish with it
 };
 
-/// A wedge of the removed vertex and the wedge of the kept one that its corners use from now on. 12 bytes.
-/// `blend` is how far the kept wedge's attributes move towards the removed one's, 0 to 1; an entry with removed ==
-/// kNone ends nothing and moves nothing.
+/// Attributes of wedge `kept` move towards those of `removed` by `blend`, 0 to 1. Where `ends` is set, `removed` is a wedge of
+/// the removed vertex whose corners use `kept` from now on; else it only lends its values. 16 bytes.
 struct WedgeMerge {
   std::uint32_t kept = 0, removed = 0;
   float blend = 0;
+  bool ends = true;
 };
 
 /// Order and content depend on the input mesh and the method's options, never on the target.

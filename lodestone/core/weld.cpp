@@ -31,9 +31,11 @@ struct TupleBytes {
   std::size_t stride;
 };
 
-std::vector<TupleBytes> tuple_bytes(const Mesh& mesh) {
+std::vector<TupleBytes> tuple_bytes(const Mesh& mesh, const std::vector<bool>& compared) {
   std::vector<TupleBytes> out;
-  for (const AttributeStream& stream : mesh.attributes) {
+  for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
+    const AttributeStream& stream = mesh.attributes[i];
+    if (!compared[i]) continue;
     std::visit(
         [&](const auto& values) {
           out.push_back({reinterpret_cast<const char*>(values.data()), stream.components * sizeof(values[0])});
@@ -182,7 +184,7 @@ Result<Mesh> weld_exact(Mesh mesh, Task task) {
       [&](std::size_t a, std::size_t b) { return mesh.positions[a] == mesh.positions[b]; });
   if (task.cancelled()) return cancelled_error("welding");
   if (all_used_and_distinct(mesh, vertex_to)) return mesh;
-  const std::vector<TupleBytes> tuples = tuple_bytes(mesh);
+  const std::vector<TupleBytes> tuples = tuple_bytes(mesh, std::vector<bool>(mesh.attributes.size(), true));
   const auto vertex = [&](std::size_t w) { return vertex_to[mesh.vertex_of(static_cast<std::uint32_t>(w))]; };
   const std::vector<std::uint32_t> wedge_to = representatives(
       mesh.wedge_count(), task, [&](std::size_t w) { return hash_wedge(tuples, vertex(w), w); },
@@ -190,6 +192,14 @@ Result<Mesh> weld_exact(Mesh mesh, Task task) {
   if (task.cancelled()) return cancelled_error("welding");
   compact(mesh, wedge_to, vertex_to, task);
   return mesh;
+}
+
+std::vector<std::uint32_t> wedge_classes(const Mesh& mesh, const std::vector<bool>& compared, Task task) {
+  const std::vector<TupleBytes> tuples = tuple_bytes(mesh, compared);
+  const auto vertex = [&](std::size_t w) { return mesh.vertex_of(static_cast<std::uint32_t>(w)); };
+  return representatives(
+      mesh.wedge_count(), task, [&](std::size_t w) { return hash_wedge(tuples, vertex(w), w); },
+      [&](std::size_t a, std::size_t b) { return vertex(a) == vertex(b) && equal_wedges(tuples, a, b); });
 }
 
 }  // namespace lodestone

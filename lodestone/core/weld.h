@@ -13,4 +13,8 @@ namespace lodestone {
 /// O(wedges), memory about 24 bytes a wedge. Errors: cancelled.
 Result<Mesh> weld_exact(Mesh mesh, Task task = {});
 
+/// For each wedge the lowest wedge of the same vertex whose tuples are equal in all streams with `compared[stream]` set.
+/// With normals left out, wedges that differ in nothing else fall together. O(wedges).
+std::vector<std::uint32_t> wedge_classes(const Mesh& mesh, const std::vector<bool>& compared, Task task = {});
+
 }  // namespace lodestone

@@ -1,0 +1,164 @@
+// Method   greedy edge collapse in passes: memoryless quadrics, volume-preserving placement, the cheapest edges of a pass in order
+// Source   Lindstrom & Turk 1998 (placement and cost), Garland & Heckbert 1997 (quadrics), Dey et al. 1999 (link condition)
+// Cost     O(n log n) time: each pass is linear and removes a fixed share of what is left
+// Steps    working mesh -> { stars, quadrics, candidates, sort, sweep, compact } until a target -> record -> replay
+#include "lodestone/simplify/edge_collapse.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodestone/simplify/collapse_state_detail.h"
+
+namespace lodestone::simplify {
+
+using detail::State;
+using detail::Step;
+
+const char* to_string(StopReason reason) {
+  switch (reason) {
+    case StopReason::reached_target:
+      return "reached_target";
+    case StopReason::error_limit:
+      return "error_limit";
+    case StopReason::no_legal_collapse:
+      return "no_legal_collapse";
+  }
+  return "";
+}
+
+namespace {
+
+// Share of the edges that a pass tries. A tenth to a third give the same quality; larger ones cost some.
+constexpr double kShare = 0.3;
+
+Result<void> check(const Mesh& mesh, const EdgeCollapseOptions& options) {
+  const auto bad = [](const char* what, const char* remedy) {
+    return fail(ErrorCode::bad_argument, what, "edge collapse", remedy);
+  };
+  if (options.target_triangles == 0 && !(options.max_error < std::numeric_limits<double>::infinity())) {
+    return bad("neither a triangle count nor an error is asked for", "set target_triangles or max_error");
+  }
+  if (!(options.max_error >= 0)) return bad("the error limit is negative or not a number", "use 0 or more");
+  if (!options.locked.empty() && options.locked.size() != mesh.vertex_count()) {
+    return bad("the list of locked vertices has another length than the mesh's vertices", "give one entry a vertex");
+  }
+  return {};
+}
+
+struct Run {
+  std::vector<Step> steps;
+  std::vector<WedgeMerge> merges;
+};
+
+// Passes until the count or the error limit is passed, or nothing moves any more. The order of steps does not depend on either.
+Run run_passes(State& state, const EdgeCollapseOptions& options, const Task& task) {
+  Run run;
+  const double start = static_cast<double>(state.triangles.size());
+  double reported = 0;
+  double share = kShare;
+  const auto error_limit = static_cast<float>(options.max_error / state.scale);
+  while (state.triangles.size() > options.target_triangles && !task.cancelled()) {
+    const std::size_t vertices = state.positions.size(), before = run.steps.size();
+    const std::size_t collapses = detail::run_pass(state, share, run.steps, run.merges, task);
+    const double done = 1 - static_cast<double>(state.triangles.size()) / std::max(1.0, start);
+    task.advance(std::max(0.0, done - reported));
+    reported = std::max(reported, done);
+    const bool over = std::any_of(run.steps.begin() + static_cast<std::ptrdiff_t>(before), run.steps.end(),
+                                  [&](const Step& s) { return s.error > error_limit; });
+    if (over || (collapses == 0 && share >= 1)) break;
+    if (collapses * 50 < vertices) share = std::min(1.0, share * 2);
+  }
+  return run;
+}
+
+// From steps in the working frame to the lasting record.
+CollapseLog make_log(const Mesh& mesh, State& state, Run run) {
+  CollapseLog log;
+  log.dropped = std::move(state.dropped);
+  log.start_triangles = static_cast<std::uint32_t>(mesh.triangles.size() - log.dropped.size());
+  log.wedges = std::move(run.merges);
+  log.collapses.reserve(run.steps.size());
+  std::vector<Vec3f> current = mesh.positions;
+  double error = 0;
+  for (const Step& step : run.steps) {
+    Collapse c;
+    c.kept = step.kept;
+    c.removed = step.removed;
+    c.kept_before = current[step.kept];
+    c.position = step.moved ? to_float(to_double(step.position) * state.scale + state.center) : c.kept_before;
+    error = std::max(error, static_cast<double>(step.error) * state.scale);
+    c.error = static_cast<float>(error);
+    c.first_wedge = step.first_wedge;
+    c.faces = step.faces;
+    current[step.kept] = c.position;
+    log.collapses.push_back(c);
+  }
+  return log;
+}
+
+struct Cut {
+  std::size_t count;
+  StopReason stop;
+};
+
+Cut find_cut(const CollapseLog& log, const EdgeCollapseOptions& options) {
+  const auto within = std::partition_point(log.collapses.begin(), log.collapses.end(), [&](const Collapse& c) {
+    return static_cast<double>(c.error) <= options.max_error;
+  });
+  const auto by_error = static_cast<std::size_t>(within - log.collapses.begin());
+  if (options.target_triangles > 0) {
+    const std::size_t by_count = log.prefix_for(options.target_triangles);
+    if (by_count <= by_error && log.triangles_after(by_count) <= options.target_triangles) {
+      return {by_count, StopReason::reached_target};
+    }
+  }
+  return {by_error, by_error < log.collapses.size() ? StopReason::error_limit : StopReason::no_legal_collapse};
+}
+
+LockCounts count_locks(const State& state) {
+  LockCounts counts;
+  for (const std::uint32_t v : state.original) {
+    switch (state.causes[v]) {
+      case detail::LockCause::none:
+        break;
+      case detail::LockCause::border:
+        ++counts.border;
+        break;
+      case detail::LockCause::seam_corner:
+        ++counts.seam_corner;
+        break;
+      case detail::LockCause::non_manifold:
+        ++counts.non_manifold;
+        break;
+      case detail::LockCause::by_request:
+        ++counts.by_request;
+        break;
+    }
+  }
+  return counts;
+}
+
+}  // namespace
+
+Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOptions& options, Task task) {
+  if (const Result<void> ok = check(mesh, options); !ok) return fail(ok.error());
+  const Task passes = task.part(0.9);
+  Result<State> state = detail::make_state(mesh, options, passes);
+  if (!state) return fail(state.error());
+  Run run = run_passes(*state, options, passes);
+  if (task.cancelled()) return cancelled_error("edge collapse");
+  EdgeCollapseResult result;
+  result.locked = count_locks(*state);
+  CollapseLog log = make_log(mesh, *state, std::move(run));
+  const Cut cut = find_cut(log, options);
+  result.stop = cut.stop;
+  if (cut.count > 0) result.estimated_error = log.collapses[cut.count - 1].error;
+  Result<ReplayResult> replayed = replay(mesh, log, cut.count, task);
+  if (!replayed) return fail(replayed.error());
+  result.mesh = std::move(replayed->mesh);
+  result.origin = std::move(replayed->origin);
+  if (options.record_log) result.log = std::move(log);
+  return result;
+}
+
+}  // namespace lodestone::simplify
