@@ -1,0 +1,312 @@
+// Method   one collapse run a mesh -> merged order -> a prefix a level -> measured against the original in world space
+// Targets  counts by the record alone; errors by bisection over prefixes, each probe replayed and measured
+#include "lodestone/chain/build_ladder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "lodestone/base/units.h"
+#include "lodestone/chain/collapse_plan_detail.h"
+
+namespace lodestone::chain {
+
+using detail::CollapsePlan;
+using measure::Reference;
+
+namespace {
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+tl::unexpected<Error> bad(std::string what, std::string remedy) {
+  return fail(ErrorCode::bad_argument, std::move(what), {}, std::move(remedy));
+}
+
+Result<void> check(const LadderOptions& options) {
+  const int families = (options.ratios.empty() ? 0 : 1) + (options.triangles.empty() ? 0 : 1) + (options.errors.empty() ? 0 : 1);
+  if (families > 1) return bad("ratios, triangle counts and errors are asked for at once", "give one of them");
+  if (families == 0 && options.levels < 2) {
+    return bad(fmt::format("{} levels leave nothing to make", options.levels), "ask for 2 or more, with level 0");
+  }
+  for (std::size_t i = 0; i < options.ratios.size(); ++i) {
+    const double r = options.ratios[i];
+    if (!(r > 0 && r < 1)) return bad(fmt::format("ratio {} is not between 0 and 1", r), "0.1 or 10% keeps a tenth");
+    if (i > 0 && !(r < options.ratios[i - 1])) return bad("the ratios do not fall", "name the finest level first");
+  }
+  for (std::size_t i = 0; i < options.triangles.size(); ++i) {
+    if (options.triangles[i] == 0) return bad("a level of 0 triangles is asked for", "ask for at least 1");
+    if (i > 0 && options.triangles[i] >= options.triangles[i - 1]) {
+      return bad("the triangle counts do not fall", "name the finest level first");
+    }
+  }
+  for (std::size_t i = 0; i < options.errors.size(); ++i) {
+    if (!(options.errors[i] > 0) || !std::isfinite(options.errors[i])) {
+      return bad(fmt::format("error {} is not above 0", options.errors[i]), "give a length above 0");
+    }
+    if (i > 0 && !(options.errors[i] > options.errors[i - 1])) {
+      return bad("the errors do not rise", "name the finest level first");
+    }
+  }
+  return {};
+}
+
+// Wanted drawn triangles of each coarser level.
+std::vector<std::size_t> count_targets(const LadderOptions& options, std::size_t drawn) {
+  if (!options.triangles.empty()) return options.triangles;
+  std::vector<std::size_t> targets;
+  const auto share_of = [&](double share) {
+    return std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(drawn) * share));
+  };
+  for (const double ratio : options.ratios) targets.push_back(share_of(ratio));
+  if (!targets.empty()) return targets;
+  double share = 1;
+  for (std::size_t level = 1; level < options.levels; ++level) targets.push_back(share_of(share *= 0.5));
+  return targets;
+}
+
+// A prefix of the plan, made and measured.
+struct Cut {
+  std::size_t prefix = 0;
+  Level level;
+  double simplify_seconds = 0, measure_seconds = 0;
+};
+
+Result<Cut> make_cut(const CollapsePlan& plan, std::size_t prefix, const Reference& reference,
+                     const measure::DistanceOptions& options, const Task& task) {
+  Cut cut;
+  cut.prefix = prefix;
+  const Stopwatch making;
+  Result<Model> model = plan.model_after(prefix, task.part(0.3));
+  if (!model) return fail(model.error());
+  cut.simplify_seconds = making.seconds();
+  const Stopwatch measuring;
+  const Result<measure::Distance> d = reference.distance_to(*model, options, task.part(0.7));
+  if (!d) return fail(d.error());
+  cut.measure_seconds = measuring.seconds();
+  cut.level.triangles = drawn_triangles(*model);
+  cut.level.model = std::move(*model);
+  cut.level.method = "edge collapse";
+  cut.level.seconds = cut.simplify_seconds + cut.measure_seconds;
+  LevelError& e = cut.level.error;
+  e.error = e.measured_error = d->max;
+  e.mean_error = d->mean;
+  e.rms_error = d->rms;
+  e.diagonal = d->diagonal;
+  e.kind = ErrorKind::measured;
+  e.samples = d->samples;
+  return cut;
+}
+
+// The coarsest prefix found whose measured maximum is within `limit`, not finer than `start`: bisection on the logarithm of the
+// triangle count until the bracket is within one percent. Nothing within the limit: the cut at `start` itself.
+Result<Cut> find_error_cut(const CollapsePlan& plan, std::size_t start, double limit, const Reference& reference,
+                           const measure::DistanceOptions& options, const Task& task) {
+  const Task probes = task.part(0.9, "searching");
+  std::size_t good = start, bad_prefix = plan.size() + 1;
+  Cut best;
+  double simplify_seconds = 0, measure_seconds = 0;
+  bool have = false;
+  std::size_t probe = plan.size();
+  while (true) {
+    Result<Cut> cut = make_cut(plan, probe, reference, options, probes.part(0.1));
+    if (!cut) return fail(cut.error());
+    simplify_seconds += cut->simplify_seconds;
+    measure_seconds += cut->measure_seconds;
+    if (cut->level.error.measured_error <= limit) {
+      good = probe;
+      best = std::move(*cut);
+      have = true;
+    } else {
+      bad_prefix = probe;
+    }
+    const auto fine = static_cast<double>(plan.triangles_after(good));
+    const auto coarse = static_cast<double>(plan.triangles_after(std::min(plan.size(), bad_prefix)));
+    if (bad_prefix <= good + 1 || fine - coarse <= 0.01 * coarse) break;
+    const auto middle = static_cast<std::size_t>(std::sqrt(fine * coarse));
+    probe = std::clamp(plan.prefix_for(middle), good + 1, bad_prefix - 1);
+  }
+  if (!have || best.prefix != good) {
+    Result<Cut> cut = make_cut(plan, good, reference, options, task);
+    if (!cut) return cut;
+    best = std::move(*cut);
+    simplify_seconds += best.simplify_seconds;
+    measure_seconds += best.measure_seconds;
+  }
+  best.simplify_seconds = simplify_seconds;
+  best.measure_seconds = measure_seconds;
+  best.level.seconds = simplify_seconds + measure_seconds;
+  return best;
+}
+
+std::string count_shortfall(const CollapsePlan& plan, std::size_t wanted, std::size_t got) {
+  return fmt::format("{} triangles were asked for, {} are the fewest: {}", with_separators(wanted), with_separators(got),
+                     plan.why_it_ends());
+}
+
+Level original_level(const Model& original, double diagonal) {
+  Level level;
+  level.triangles = drawn_triangles(original);
+  level.method = "original";
+  level.error.diagonal = diagonal;
+  return level;
+}
+
+// Adds a cut with its error raised to the finer levels' and accounts its time.
+void add_level(LadderResult& result, Cut cut) {
+  LevelError& e = cut.level.error;
+  e.error = std::max(e.measured_error, result.ladder.levels.back().error.error);
+  result.simplify_seconds += cut.simplify_seconds;
+  result.measure_seconds += cut.measure_seconds;
+  result.ladder.levels.push_back(std::move(cut.level));
+}
+
+Result<void> add_count_levels(LadderResult& result, const CollapsePlan& plan, const std::vector<std::size_t>& targets,
+                              const Reference& reference, const LadderOptions& options, const Task& task) {
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const Task part = task.part(1.0 / static_cast<double>(targets.size()), fmt::format("level {}", i + 1));
+    const std::size_t prefix = plan.prefix_for(targets[i]), left = plan.triangles_after(prefix);
+    const bool short_of = left > targets[i];
+    // A level that hardly differs from the one before is no level: the ladder ends.
+    const bool shrinks = left * 100 <= result.ladder.levels.back().triangles * 97;
+    if (short_of) result.shortfalls.push_back({i + 1, count_shortfall(plan, targets[i], left)});
+    if (prefix > last && (!short_of || shrinks)) {
+      Result<Cut> cut = make_cut(plan, prefix, reference, options.distance, part);
+      if (!cut) return fail(cut.error());
+      add_level(result, std::move(*cut));
+      last = prefix;
+    } else if (!short_of) {
+      result.shortfalls.push_back({i + 1, "it would not differ from the level before"});
+    }
+    if (short_of) break;
+  }
+  return {};
+}
+
+Result<void> add_error_levels(LadderResult& result, const CollapsePlan& plan, const Reference& reference,
+                              const LadderOptions& options, const Task& task) {
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < options.errors.size(); ++i) {
+    const Task part = task.part(1.0 / static_cast<double>(options.errors.size()), fmt::format("level {}", i + 1));
+    Result<Cut> cut = find_error_cut(plan, last, options.errors[i], reference, options.distance, part);
+    if (!cut) return fail(cut.error());
+    if (cut->prefix == last) {
+      result.shortfalls.push_back(
+          {i + 1, fmt::format("nothing coarser than the level before has a measured error within {:.6g}", options.errors[i])});
+      result.simplify_seconds += cut->simplify_seconds;
+      result.measure_seconds += cut->measure_seconds;
+      continue;
+    }
+    last = cut->prefix;
+    add_level(result, std::move(*cut));
+    if (last == plan.size() && i + 1 < options.errors.size()) {
+      result.shortfalls.push_back({i + 2, "the level before is the coarsest there is: " + plan.why_it_ends()});
+      break;
+    }
+  }
+  return {};
+}
+
+Result<void> check_drawn(const Model& original) {
+  if (drawn_triangles(original) > 0) return {};
+  return fail(ErrorCode::empty, "the model draws no triangle", {}, "is a scene with meshes in the file?");
+}
+
+}  // namespace
+
+Result<LadderResult> build_ladder(Model original, const LadderOptions& options, Task task) {
+  if (const Result<void> ok = check(options); !ok) return fail(ok.error());
+  if (const Result<void> ok = check_drawn(original); !ok) return fail(ok.error());
+  const std::vector<std::size_t> targets = count_targets(options, drawn_triangles(original));
+  const std::size_t smallest = options.errors.empty() ? targets.back() : 1;
+
+  LadderResult result;
+  result.ladder.original = std::move(original);
+  const Model& model = result.ladder.original;
+  const Stopwatch collapsing;
+  const Result<CollapsePlan> plan = CollapsePlan::create(model, smallest, options.keep_border, task.part(0.4, "collapsing"));
+  if (!plan) return fail(plan.error());
+  result.simplify_seconds = collapsing.seconds();
+  const Stopwatch preparing;
+  const Result<Reference> reference = Reference::create(model, task.part(0.05, "preparing to measure"));
+  if (!reference) return fail(reference.error());
+  result.measure_seconds = preparing.seconds();
+  result.ladder.levels.push_back(original_level(model, reference->diagonal()));
+  const Task measuring = task.part(0.55, "measuring");
+  const Result<void> added = options.errors.empty()
+                                 ? add_count_levels(result, *plan, targets, *reference, options, measuring)
+                                 : add_error_levels(result, *plan, *reference, options, measuring);
+  if (!added) return fail(added.error());
+  return result;
+}
+
+Result<SimplifyModelResult> simplify_model(const Model& original, const SimplifyModelOptions& options, Task task) {
+  const bool by_count = options.target_triangles > 0, by_error = options.max_error > 0;
+  if (by_count == by_error) {
+    return bad(by_count ? "a triangle count and an error are asked for at once" : "no target is asked for",
+               "give a triangle count, a ratio or an error");
+  }
+  if (const Result<void> ok = check_drawn(original); !ok) return fail(ok.error());
+  const Stopwatch collapsing;
+  const Result<CollapsePlan> plan = CollapsePlan::create(original, by_count ? options.target_triangles : 1,
+                                                         options.keep_border, task.part(0.5, "collapsing"));
+  if (!plan) return fail(plan.error());
+  SimplifyModelResult result;
+  result.simplify_seconds = collapsing.seconds();
+  const Stopwatch preparing;
+  const Result<Reference> reference = Reference::create(original, task.part(0.1, "preparing to measure"));
+  if (!reference) return fail(reference.error());
+  result.measure_seconds = preparing.seconds();
+  const Task rest = task.part(0.4, "measuring");
+  Result<Cut> cut = by_count
+                        ? make_cut(*plan, plan->prefix_for(options.target_triangles), *reference, options.distance, rest)
+                        : find_error_cut(*plan, 0, options.max_error, *reference, options.distance, rest);
+  if (!cut) return fail(cut.error());
+  result.simplify_seconds += cut->simplify_seconds;
+  result.measure_seconds += cut->measure_seconds;
+  result.locked = plan->locked();
+  result.level = std::move(cut->level);
+  const bool at_end = cut->prefix == plan->size();
+  if (by_count && result.level.triangles > options.target_triangles) {
+    result.stop = simplify::StopReason::no_legal_collapse;
+    result.shortfall = count_shortfall(*plan, options.target_triangles, result.level.triangles);
+  } else if (by_count) {
+    result.stop = simplify::StopReason::reached_target;
+  } else {
+    result.stop = at_end ? simplify::StopReason::no_legal_collapse : simplify::StopReason::error_limit;
+    if (cut->prefix == 0) {
+      result.shortfall = fmt::format("no coarser mesh has a measured error within {:.6g}", options.max_error);
+    }
+  }
+  return result;
+}
+
+std::vector<std::vector<double>> screen_coverages(const Ladder& ladder, const measure::View& view) {
+  std::vector<std::vector<double>> rows;
+  for (const Instance& instance : ladder.original.instances) {
+    Box3d box;
+    const Mesh& mesh = ladder.original.meshes[instance.mesh];
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      for (const std::uint32_t v : mesh.vertices_of(t)) box.add(instance.transform.point(mesh.position(v)));
+    }
+    const double radius = box.diagonal() / 2;
+    std::vector<double> row;
+    for (std::size_t level = 1; level < ladder.levels.size(); ++level) {
+      row.push_back(measure::screen_coverage(radius, measure::switch_distance(ladder.levels[level].error.error, 1, view), view));
+    }
+    row.push_back(0);  // the coarsest never vanishes
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace lodestone::chain

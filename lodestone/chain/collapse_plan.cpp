@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lodestone/base/units.h"
+#include "lodestone/chain/collapse_plan_detail.h"
+
+namespace lodestone::chain::detail {
+
+namespace {
+
+// How much each mesh's errors grow on their way to world space, at most.
+std::vector<double> largest_scales(const Model& model) {
+  std::vector<double> scales(model.meshes.size(), 0);
+  for (const Instance& i : model.instances) scales[i.mesh] = std::max(scales[i.mesh], i.transform.scale_bound());
+  return scales;
+}
+
+// All meshes' collapses by error in world space; within a mesh the log's order, as its errors never fall.
+std::vector<std::uint32_t> merge_order(const std::vector<CollapseLog>& logs, const std::vector<double>& scales) {
+  struct Step {
+    double error;
+    std::uint32_t mesh;
+  };
+  std::vector<Step> steps;
+  std::size_t total = 0;
+  for (const CollapseLog& log : logs) total += log.collapses.size();
+  steps.reserve(total);
+  for (std::uint32_t m = 0; m < logs.size(); ++m) {
+    for (const Collapse& c : logs[m].collapses) steps.push_back({static_cast<double>(c.error) * scales[m], m});
+  }
+  const bool one_mesh = steps.empty() || steps.front().mesh == steps.back().mesh;
+  if (!one_mesh) {
+    std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.error < b.error; });
+  }
+  std::vector<std::uint32_t> order(steps.size());
+  for (std::size_t i = 0; i < steps.size(); ++i) order[i] = steps[i].mesh;
+  return order;
+}
+
+void add(simplify::LockCounts& sum, const simplify::LockCounts& more) {
+  sum.border += more.border;
+  sum.seam_corner += more.seam_corner;
+  sum.non_manifold += more.non_manifold;
+  sum.by_request += more.by_request;
+}
+
+}  // namespace
+
+Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t smallest, bool keep_border, Task task) {
+  CollapsePlan plan;
+  plan.original_ = &original;
+  const std::vector<std::uint32_t> uses = instance_counts(original);
+  const std::size_t all = std::max<std::size_t>(1, drawn_triangles(original));
+  const bool one_mesh = original.instances.size() == 1;
+  plan.logs_.resize(original.meshes.size());
+  std::size_t drawn = 0;
+  for (std::size_t m = 0; m < original.meshes.size(); ++m) {
+    const Mesh& mesh = original.meshes[m];
+    if (uses[m] == 0 || mesh.triangles.empty()) continue;
+    simplify::EdgeCollapseOptions options;
+    options.target_triangles = one_mesh ? std::max<std::size_t>(1, smallest) : 1;
+    options.keep_border = keep_border;
+    options.record_log = true;
+    const double share = static_cast<double>(mesh.triangles.size() * uses[m]) / static_cast<double>(all);
+    Result<simplify::EdgeCollapseResult> run = simplify::collapse_edges(mesh, options, task.part(share));
+    if (!run) return fail(run.error());
+    plan.logs_[m] = std::move(*run->log);
+    drawn += std::size_t{plan.logs_[m].start_triangles} * uses[m];
+    add(plan.locked_, run->locked);
+  }
+  plan.mesh_of_step_ = merge_order(plan.logs_, largest_scales(original));
+  plan.drawn_after_.reserve(plan.size() + 1);
+  plan.drawn_after_.push_back(drawn);
+  std::vector<std::size_t> next(original.meshes.size(), 0);
+  for (const std::uint32_t m : plan.mesh_of_step_) {
+    drawn -= std::size_t{plan.logs_[m].collapses[next[m]++].faces} * uses[m];
+    plan.drawn_after_.push_back(drawn);
+  }
+  return plan;
+}
+
+std::size_t CollapsePlan::prefix_for(std::size_t triangles) const {
+  const auto found = std::partition_point(drawn_after_.begin(), drawn_after_.end(),
+                                          [&](std::size_t left) { return left > triangles; });
+  return std::min(size(), static_cast<std::size_t>(found - drawn_after_.begin()));
+}
+
+Result<Model> CollapsePlan::model_after(std::size_t count, Task task) const {
+  std::vector<std::size_t> counts(logs_.size(), 0);
+  for (std::size_t i = 0; i < count; ++i) ++counts[mesh_of_step_[i]];
+  Model model;
+  model.instances = original_->instances;
+  model.materials = original_->materials;
+  model.document = original_->document;
+  model.meters_per_unit = original_->meters_per_unit;
+  model.uv_origin_top = original_->uv_origin_top;
+  const double share = 1.0 / static_cast<double>(std::max<std::size_t>(1, logs_.size()));
+  for (std::size_t m = 0; m < logs_.size(); ++m) {
+    const Mesh& mesh = original_->meshes[m];
+    if (logs_[m].start_triangles == 0) {  // not drawn: as it was
+      model.meshes.push_back(mesh);
+      continue;
+    }
+    Result<ReplayResult> replayed = replay(mesh, logs_[m], counts[m], task.part(share));
+    if (!replayed) return fail(replayed.error());
+    model.meshes.push_back(std::move(replayed->mesh));
+  }
+  return model;
+}
+
+std::string CollapsePlan::why_it_ends() const {
+  std::vector<std::string> causes;
+  const auto tell = [&](std::size_t count, const char* text) {
+    if (count > 0) causes.push_back(fmt::format("{} {}", with_separators(count), text));
+  };
+  tell(locked_.seam_corner, "where seams, borders or materials meet or end (weld or re-unwrap the model to free them)");
+  tell(locked_.non_manifold, "non-manifold (split the model into clean pieces to free them)");
+  tell(locked_.border, "on open borders (leave --keep-border off to free them)");
+  tell(locked_.by_request, "locked on request");
+  if (causes.empty()) return "no collapse is left that keeps the surface's topology and folds nothing";
+  return fmt::format("vertices that cannot move: {}", fmt::join(causes, ", "));
+}
+
+}  // namespace lodestone::chain::detail

@@ -1,0 +1,145 @@
+#include "lodestone/spatial/bvh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodestone/base/parallel.h"
+#include "lodestone/math/triangle.h"
+
+namespace lodestone::spatial {
+
+namespace {
+
+constexpr std::size_t kChunk = 4096;
+using Float4 = float __attribute__((vector_size(16)));
+
+Float4 load(const float* p) { return *reinterpret_cast<const Float4*>(p); }
+
+Float4 at_least_zero(Float4 a) {
+  const Float4 zero{};
+  return a > zero ? a : zero;
+}
+
+Float4 larger(Float4 a, Float4 b) { return a > b ? a : b; }
+
+// A child to visit: level (0 = triangle), index within the level, squared distance to its box.
+struct Visit {
+  float distance_sq;
+  std::uint32_t level, index;
+};
+
+}  // namespace
+
+Bvh::Bvh(const Surface& surface, const Task& task) : surface_(surface), center_(surface.bounds.center()) {
+  std::size_t count = surface.triangles.size();
+  std::vector<std::size_t> sizes;
+  do {
+    count = (count + 3) / 4;
+    sizes.push_back(count);
+  } while (count > 1);
+  level_first_.push_back(0);
+  for (const std::size_t size : sizes) level_first_.push_back(level_first_.back() + static_cast<std::uint32_t>(size));
+  nodes_.resize(level_first_.back());
+  const Vec3d half = surface.bounds.size() * 0.5;
+  const double extent = std::max({half.x, half.y, half.z});
+  scale_ = extent > 0 ? 1 / extent : 1;
+  // Rounding to float and subtracting in float can move a box's side by a few units of the largest coordinate's last place.
+  constexpr float margin = 0x1p-21F;
+  const auto set = [](Node& node, std::size_t slot, const Box3f& box) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      node.min[k][slot] = box.min[k];
+      node.max[k][slot] = box.max[k];
+    }
+  };
+  Box3f nowhere;  // far away, so that no query goes there; infinities would make NaN
+  nowhere.min = nowhere.max = {1e19F, 1e19F, 1e19F};
+  parallel_for(sizes[0], kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t n = begin; n < end; ++n) {
+      for (std::size_t slot = 0; slot < 4; ++slot) {
+        const std::size_t t = n * 4 + slot;
+        Box3f box = nowhere;
+        if (t < surface.triangles.size()) {
+          box = Box3f{};
+          for (const Vec3d c : surface.corners(t)) box.add(to_float((c - center_) * scale_));
+          box.min -= {margin, margin, margin};
+          box.max += {margin, margin, margin};
+        }
+        set(nodes_[n], slot, box);
+      }
+    }
+  });
+  for (std::size_t level = 1; level < sizes.size(); ++level) {
+    parallel_for(sizes[level], kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t n = begin; n < end; ++n) {
+        for (std::size_t slot = 0; slot < 4; ++slot) {
+          const std::size_t child = n * 4 + slot;
+          Box3f box = nowhere;
+          if (child < sizes[level - 1]) {
+            const Node& c = nodes_[level_first_[level - 1] + child];
+            box = Box3f{};
+            for (std::size_t s = 0; s < 4; ++s) {
+              if (c.min[0][s] == nowhere.min.x) continue;
+              box.add(Vec3f{c.min[0][s], c.min[1][s], c.min[2][s]});
+              box.add(Vec3f{c.max[0][s], c.max[1][s], c.max[2][s]});
+            }
+          }
+          set(nodes_[level_first_[level] + n], slot, box);
+        }
+      }
+    });
+  }
+}
+
+Nearest Bvh::test(Vec3d p, std::uint32_t triangle) const {
+  const auto [a, b, c] = surface_.corners(triangle);
+  const ClosestPoint found = closest_point(p, a, b, c);
+  return {triangle, found.point, found.distance_sq};
+}
+
+Nearest Bvh::closest(Vec3d p, std::uint32_t hint) const {
+  Nearest best;
+  if (hint != kNone) best = test(p, hint);
+  const Vec3d local = (p - center_) * scale_;
+  if (!(length_sq(local) < 1e24)) return test(p, 0);  // so far away that double can't tell one triangle from another
+  const Vec3f q = to_float(local);
+  const Float4 x{q.x, q.x, q.x, q.x}, y{q.y, q.y, q.y, q.y}, z{q.z, q.z, q.z, q.z};
+  // Squared float distances are off by a few 1e-7 of themselves; q's own rounding is in the margin while it is near, and
+  // relative to the distance when it is far.
+  const double to_local = scale_ * scale_ * 1.000002;
+  const auto limit = [&] { return static_cast<float>(std::min(best.distance_sq * to_local, 3e37)); };
+  float worst = limit();
+  Visit stack[96];
+  std::size_t top = 0;
+  stack[top++] = {0, static_cast<std::uint32_t>(level_first_.size() - 1), 0};
+  while (top > 0) {
+    const Visit visit = stack[--top];
+    if (visit.distance_sq > worst) continue;
+    if (visit.level == 0) {
+      const Nearest found = test(p, visit.index);
+      if (found.distance_sq < best.distance_sq || (found.distance_sq == best.distance_sq && found.triangle < best.triangle)) {
+        best = found;
+        worst = limit();
+      }
+      continue;
+    }
+    const Node& node = nodes_[level_first_[visit.level - 1] + visit.index];
+    const Float4 dx = at_least_zero(larger(load(node.min[0]) - x, x - load(node.max[0])));
+    const Float4 dy = at_least_zero(larger(load(node.min[1]) - y, y - load(node.max[1])));
+    const Float4 dz = at_least_zero(larger(load(node.min[2]) - z, z - load(node.max[2])));
+    const Float4 d = dx * dx + dy * dy + dz * dz;
+    const std::size_t first = top;
+    for (std::uint32_t slot = 0; slot < 4; ++slot) {
+      if (d[slot] > worst || d[slot] > 1e36F) continue;
+      // Insertion keeps the nearest on top.
+      std::size_t place = top++;
+      while (place > first && stack[place - 1].distance_sq < d[slot]) {
+        stack[place] = stack[place - 1];
+        --place;
+      }
+      stack[place] = {d[slot], visit.level - 1, visit.index * 4 + slot};
+    }
+  }
+  return best;
+}
+
+}  // namespace lodestone::spatial

@@ -1,0 +1,47 @@
+// Bounding-volume tree over a surface's triangles, for closest-point queries.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "lodestone/base/task.h"
+#include "lodestone/spatial/surface.h"
+
+namespace lodestone::spatial {
+
+/// The nearest triangle, the nearest point on it, and how far it is.
+struct Nearest {
+  std::uint32_t triangle = kNone;
+  Vec3d point;
+  double distance_sq = std::numeric_limits<double>::infinity();
+};
+
+/// A packed tree: four children a node, the surface's Hilbert order cut into fours level by level, so nothing needs a pointer.
+/// Boxes are floats rounded outward, triangles are tested in double: the answer is exact in double precision.
+/// Build O(n), memory about 32 bytes a triangle. The surface must outlive the tree.
+class Bvh {
+ public:
+  explicit Bvh(const Surface& surface, const Task& task = {});
+
+  /// The closest point to p. `hint` is a triangle that is probably near (any, or kNone): a good one makes it several times
+  /// faster and never changes the distance. Of equally near triangles the lowest in surface order that the search meets.
+  Nearest closest(Vec3d p, std::uint32_t hint = kNone) const;
+
+  const Surface& surface() const { return surface_; }
+
+ private:
+  // Boxes of four children, one array a side, so that four distances are computed at once.
+  struct alignas(16) Node {
+    float min[3][4], max[3][4];
+  };
+  Nearest test(Vec3d p, std::uint32_t triangle) const;
+
+  const Surface& surface_;
+  Vec3d center_;                         // boxes are relative to it,
+  double scale_ = 1;                     // and scaled so that they lie in [-1, 1]: no overflow, no subnormal numbers
+  std::vector<Node> nodes_;              // level 0 (children are triangles) first, the root last
+  std::vector<std::uint32_t> level_first_;  // first node of each level, and the end
+};
+
+}  // namespace lodestone::spatial
