@@ -1,9 +1,37 @@
 # `cmake --install`: headers and libraries of every room, the command, find_package(lodestone) and pkg-config.
 include(CMakePackageConfigHelpers)
 
-install(EXPORT lodestone-targets NAMESPACE lodestone:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/lodestone)
+set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/lodestone)
+install(EXPORT lodestone-targets NAMESPACE lodestone:: DESTINATION ${config_dir})
 configure_package_config_file(cmake/lodestone-config.cmake.in ${PROJECT_BINARY_DIR}/lodestone-config.cmake
-  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/lodestone)
+  INSTALL_DESTINATION ${config_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/lodestone-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/lodestone-config.cmake ${PROJECT_BINARY_DIR}/lodestone-config-version.cmake
-  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/lodestone)
+  DESTINATION ${config_dir})
+
+# pkg-config. The rooms are static libraries, so all they need is listed, upper rooms before lower ones.
+set(pc_libs "")
+get_property(rooms GLOBAL PROPERTY LODESTONE_ROOMS)  # in the order of lodestone/CMakeLists.txt: lower ones first
+foreach(room IN LISTS rooms)
+  get_target_property(type lodestone_${room} TYPE)
+  if(type STREQUAL "STATIC_LIBRARY")
+    string(PREPEND pc_libs "-llodestone_${room} ")
+  endif()
+endforeach()
+set(pc_requires "fmt")
+if(NOT LODESTONE_STD_THREADS)
+  string(APPEND pc_requires " tbb")
+endif()
+if(LODESTONE_WITH_DRACO)
+  string(APPEND pc_requires " draco")
+endif()
+if(LODESTONE_WITH_ASSIMP)
+  string(APPEND pc_requires " assimp")
+endif()
+if(LODESTONE_WITH_MESHOPT)
+  string(APPEND pc_libs "-lmeshoptimizer")  # comes without a file for pkg-config
+endif()
+file(RELATIVE_PATH to_prefix /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)  # the installed tree may be moved
+string(REGEX REPLACE "/$" "" to_prefix ${to_prefix})
+configure_file(cmake/lodestone.pc.in ${PROJECT_BINARY_DIR}/lodestone.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/lodestone.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -49,5 +49,6 @@ function(lodestone_tests room)
   add_executable(${room}_tests ${sources})
   target_link_libraries(${room}_tests PRIVATE lodestone_options lodestone_${room} lodestone_test_support GTest::gtest
                         ${ARG_LIBRARIES})
+  add_dependencies(unit_tests ${room}_tests)
   gtest_discover_tests(${room}_tests TEST_PREFIX "${room}." PROPERTIES LABELS unit DISCOVERY_TIMEOUT 60)
 endfunction()

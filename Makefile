@@ -1,0 +1,8 @@
+# Short names for the scripts under tools/, which also run where make is not installed yet.
+.PHONY: demo test check
+demo:
+	@tools/demo "$(IN)"
+test:
+	@tools/test
+check:
+	@tools/check fast

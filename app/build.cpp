@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+#include <system_error>
+
+#include "app/build_plan.h"
+#include "app/input.h"
+#include "app/json.h"
+#include "app/stopwatch.h"
+#include "app/table.h"
+#include "app/text.h"
+#include "app/verbs.h"
+#include "lodestone/base/units.h"
+
+namespace lodestone::app {
+namespace fs = std::filesystem;
+namespace {
+
+void add_levels(BuildReport& report, const Ladder& ladder, const io::WriteReport& written, const measure::View& view) {
+  for (std::size_t i = 0; i < ladder.levels.size(); ++i) {
+    const Level& level = ladder.levels[i];
+    LevelReport row;
+    row.level = i;
+    row.triangles = level.triangles;
+    row.error = level.error;
+    row.switch_distance = measure::switch_distance(level.error.error, 1, view);
+    row.bytes = written.level_bytes[i];
+    row.file = written.files[i].string();
+    row.seconds = level.seconds;
+    report.levels.push_back(std::move(row));
+  }
+  report.total_bytes = written.total_bytes;
+}
+
+Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, const Console& console, const Task& task) {
+  Stopwatch watch;
+  BuildReport report;
+  report.input = job.input.string();
+  Result<Model> model = read_input(job.input, console, task.part(0.1, "reading"));
+  if (!model) return fail(model.error());
+  apply_unit(*model, plan.lengths);
+  report.read_seconds = watch.lap();
+  report.triangles = drawn_triangles(*model);
+  report.diagonal = bounds_of(*model).diagonal();
+  report.unit = unit_name(model->meters_per_unit);
+  report.warnings = model->warnings;
+
+  std::vector<std::string> notes;
+  const Result<chain::LadderOptions> options = ladder_options(plan, *model, notes);
+  if (!options) return fail(options.error());
+  for (const std::string& note : notes) console.note(fmt::format("{}: {}", report.input, note));
+  Result<chain::LadderResult> result = chain::build_ladder(std::move(*model), *options, task.part(0.8, "making levels"));
+  if (!result) return fail(result.error());
+  report.levels_seconds = result->simplify_seconds;
+  report.measure_seconds = result->measure_seconds;
+  report.shortfalls = std::move(result->shortfalls);
+
+  watch.lap();
+  const io::WriteOptions write{plan.compression, chain::screen_coverages(result->ladder, plan.view)};
+  const Result<io::WriteReport> written = io::write_ladder(result->ladder, job.output, write, task.part(0.1, "writing"));
+  if (!written) return fail(written.error());
+  report.write_seconds = watch.lap();
+  add_levels(report, result->ladder, *written, plan.view);
+  for (const std::string& warning : written->warnings) {
+    console.note(fmt::format("{}: {}", job.output.string(), warning));
+    report.warnings.push_back(warning);
+  }
+  report.total_seconds = watch.total();
+  report.peak_memory_bytes = peak_memory_bytes();
+  return report;
+}
+
+// One file too large must not end a batch.
+Result<BuildReport> build_within_memory(const BuildJob& job, const BuildPlan& plan, const Console& console,
+                                        const Task& task) {
+  try {
+    return build_one(job, plan, console, task);
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::out_of_memory, "out of memory", job.input.string(), "use a machine with more, or a smaller model");
+  }
+}
+
+std::string table_of(const BuildReport& report, const BuildPlan& plan) {
+  const std::string unit = report.unit.empty() ? "" : " (" + report.unit + ")";
+  Table table;
+  for (const char* title : {"level", "triangles", "share"}) table.add_column(title);
+  table.add_column("error" + unit);
+  table.add_column("relative");
+  table.add_column("1 px from" + unit);
+  for (const char* title : {"bytes", "seconds"}) table.add_column(title);
+  for (const LevelReport& level : report.levels) {
+    const double share = static_cast<double>(level.triangles) / static_cast<double>(std::max<std::size_t>(1, report.triangles));
+    table.add_row({fmt::format("{}", level.level), with_separators(level.triangles), percent(share),
+                   short_number(level.error.error), percent(level.error.relative(level.error.error)),
+                   short_number(level.switch_distance), human_bytes(level.bytes), seconds_text(level.seconds)});
+  }
+  std::string out = fmt::format("{} -> {}\n{}", printable(report.input), printable(report.levels.back().file), table.text());
+  if (report.levels.front().file != report.levels.back().file) {
+    out = fmt::format("{} -> {} ... {}\n{}", printable(report.input), printable(report.levels.front().file),
+                      printable(report.levels.back().file), table.text());
+  }
+  return out + fmt::format("{} in all, {} s; 1 px from: the distance from which the error is at most a pixel ({} lines, {} degrees)\n",
+                           human_bytes(report.total_bytes), seconds_text(report.total_seconds), plan.view.height_px,
+                           plan.view.fov_degrees);
+}
+
+void tell_shortfalls(const BuildReport& report, const Console& console) {
+  for (const chain::Shortfall& shortfall : report.shortfalls) {
+    console.shortfall(fmt::format("{}: level {}: {}", report.input, shortfall.level, shortfall.reason));
+  }
+}
+
+// A folder made for the results, taken away again if nothing came into it.
+class ResultFolder {
+ public:
+  Result<void> make(const fs::path& path) {
+    if (path.empty()) return {};
+    std::error_code error;
+    const bool made = fs::create_directory(path.has_filename() ? path : path.parent_path(), error);
+    if (error) {
+      return fail(ErrorCode::cannot_write, error.message(), path.string(), "make its parent folder first");
+    }
+    if (made) path_ = path;
+    return {};
+  }
+  ResultFolder() = default;
+  ResultFolder(const ResultFolder&) = delete;
+  ResultFolder& operator=(const ResultFolder&) = delete;
+  ~ResultFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove(path_.has_filename() ? path_ : path_.parent_path(), ignored);  // only if empty
+  }
+
+ private:
+  fs::path path_;
+};
+
+Result<ExitCode> run_single(const BuildJob& job, const BuildPlan& plan, bool json, const Console& console) {
+  const Result<BuildReport> report = build_one(job, plan, console, console.task().part(1.0));
+  if (!report) return fail(report.error());
+  console.result(json ? to_json(*report) : table_of(*report, plan));
+  tell_shortfalls(*report, console);
+  return report->shortfalls.empty() ? ExitCode::done : ExitCode::fell_short;
+}
+
+// Goes on after a bad file; only a cancelled one ends the batch.
+Result<ExitCode> run_batch(const std::vector<BuildJob>& jobs, const BuildPlan& plan, bool json, Console& console) {
+  std::vector<BuildReport> runs;
+  std::vector<Error> failures;
+  bool fell_short = false;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    console.set_title(fmt::format("{} of {}, {}", i + 1, jobs.size(), jobs[i].input.filename().string()));
+    const Task task = console.task().part(1.0 / static_cast<double>(jobs.size()));
+    Result<BuildReport> report = build_within_memory(jobs[i], plan, console, task);
+    if (!report && report.error().code == ErrorCode::cancelled) return fail(report.error());
+    if (!report) {
+      console.error(report.error());
+      BuildReport failed;
+      failed.input = jobs[i].input.string();
+      failed.failure = report.error().line();
+      runs.push_back(std::move(failed));
+      failures.push_back(report.error());
+      continue;
+    }
+    if (!json) console.result((i > 0 ? "\n" : "") + table_of(*report, plan));
+    tell_shortfalls(*report, console);
+    fell_short = fell_short || !report->shortfalls.empty();
+    runs.push_back(std::move(*report));
+  }
+  if (json) console.result(to_json(runs));
+  if (failures.empty()) return fell_short ? ExitCode::fell_short : ExitCode::done;
+  std::vector<std::string> names;
+  for (const BuildReport& run : runs) {
+    if (!run.failure.empty()) names.push_back(run.input);
+  }
+  console.shortfall(fmt::format("{} of {} failed: {}", failures.size(), jobs.size(), fmt::join(names, ", ")));
+  return ExitCode::failed;
+}
+
+}  // namespace
+
+Result<ExitCode> run_build(const Arguments& arguments, Console& console) {
+  const Result<BuildPlan> plan = build_plan(arguments);
+  if (!plan) return fail(plan.error());
+  const Result<BuildJobs> all = build_jobs(arguments);
+  if (!all) return fail(all.error());
+  ResultFolder folder;
+  if (const Result<void> made = folder.make(all->folder); !made) return fail(made.error());
+  const bool json = arguments.has("--json");
+  return all->batch ? run_batch(all->jobs, *plan, json, console) : run_single(all->jobs.front(), *plan, json, console);
+}
+
+}  // namespace lodestone::app

@@ -1,0 +1,185 @@
+#include "app/build_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <system_error>
+
+#include "app/input.h"
+#include "app/text.h"
+#include "lodestone/base/units.h"
+
+namespace lodestone::app {
+namespace fs = std::filesystem;
+namespace {
+
+Result<void> check_one_target(const Arguments& arguments) {
+  std::vector<std::string> given;
+  for (const char* option : {"--levels", "--ratio", "--triangles", "--error", "--distances"}) {
+    if (arguments.has(option)) given.emplace_back(option);
+  }
+  if (given.size() > 1) {
+    return fail(ErrorCode::bad_argument, fmt::format("{} can't be given together", fmt::join(given, " and ")), {},
+                "choose one; --ratio, --triangles, --error and --distances take a list, one level for each value");
+  }
+  if (arguments.has("--pixels") && !arguments.has("--distances")) {
+    return fail(ErrorCode::bad_argument, "--pixels needs --distances", {}, "such as --pixels 1 --distances 5,10,20");
+  }
+  return {};
+}
+
+Result<void> read_target(const Arguments& arguments, BuildPlan& plan) {
+  if (const Result<void> one = check_one_target(arguments); !one) return one;
+  // Takes a parsed value over, or hands its error on.
+  const auto take = [](auto parsed, auto& into) -> Result<void> {
+    if (!parsed) return fail(parsed.error());
+    into = std::move(*parsed);
+    return {};
+  };
+  if (arguments.has("--ratio")) return take(ratio_list(arguments, "--ratio"), plan.ratios);
+  if (arguments.has("--triangles")) return take(arguments.count_list("--triangles"), plan.triangles);
+  if (arguments.has("--error")) return take(length_list(arguments, "--error", plan.lengths), plan.errors);
+  if (arguments.has("--distances")) {
+    if (const Result<void> pixels = take(arguments.positive("--pixels"), plan.pixels); !pixels) return pixels;
+    return take(length_list(arguments, "--distances", plan.lengths, BareLength::model_units), plan.distances);
+  }
+  return take(arguments.count("--levels", 2), plan.levels);
+}
+
+}  // namespace
+
+Result<BuildPlan> build_plan(const Arguments& arguments) {
+  BuildPlan plan;
+  const Result<LengthRules> lengths = length_rules(arguments);
+  if (!lengths) return fail(lengths.error());
+  plan.lengths = *lengths;
+  if (const Result<void> target = read_target(arguments, plan); !target) return fail(target.error());
+  const Result<measure::View> view = view_of(arguments);
+  if (!view) return fail(view.error());
+  plan.view = *view;
+  const Result<measure::DistanceOptions> distance = distance_options(arguments);
+  if (!distance) return fail(distance.error());
+  plan.distance = *distance;
+  plan.keep_border = arguments.has("--keep-border");
+  plan.compression = compression_of(arguments);
+  return plan;
+}
+
+Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& model, std::vector<std::string>& notes) {
+  chain::LadderOptions options;
+  if (plan.levels > 0) options.levels = plan.levels;
+  options.ratios = plan.ratios;
+  options.triangles = plan.triangles;
+  options.keep_border = plan.keep_border;
+  options.distance = plan.distance;
+  if (!plan.ratios.empty()) {
+    std::vector<std::string> shares;
+    for (const double ratio : plan.ratios) shares.push_back(percent(ratio));
+    notes.push_back(fmt::format("keeping {} of {} triangles", fmt::join(shares, ", "),
+                                with_separators(drawn_triangles(model))));
+  }
+  const double diagonal = bounds_of(model).diagonal();
+  const Result<std::vector<double>> errors = to_model_units(plan.errors, model, diagonal);
+  if (!errors) return fail(errors.error());
+  options.errors = *errors;
+  const Result<std::vector<double>> distances = to_model_units(plan.distances, model, diagonal);
+  if (!distances) return fail(distances.error());
+  for (const double distance : *distances) {
+    options.errors.push_back(measure::pixels_to_error(plan.pixels, distance, plan.view));
+    notes.push_back(fmt::format("{} pixels at {} allow an error of {} ({} of the diagonal)", plan.pixels,
+                                short_number(distance), short_number(options.errors.back()),
+                                percent(diagonal > 0 ? options.errors.back() / diagonal : 0)));
+  }
+  return options;
+}
+
+namespace {
+
+bool is_directory(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+std::string replaced(std::string text, std::string_view mark, const std::string& by) {
+  for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + by.size())) {
+    text.replace(at, mark.size(), by);
+  }
+  return text;
+}
+
+// Inputs with directories replaced by their files.
+Result<std::vector<fs::path>> list_inputs(const Arguments& arguments) {
+  std::vector<fs::path> inputs;
+  for (const std::string& word : arguments.inputs) {
+    if (!is_directory(word)) {
+      inputs.emplace_back(word);
+      continue;
+    }
+    Result<std::vector<fs::path>> files = models_in(word);
+    if (!files) return fail(files.error());
+    inputs.insert(inputs.end(), files->begin(), files->end());
+  }
+  return inputs;
+}
+
+// Two inputs a.ply and a.obj would both become a.glb: those keep their endings.
+std::vector<std::string> output_names(const std::vector<fs::path>& inputs) {
+  std::map<std::string, int> uses;
+  for (const fs::path& input : inputs) ++uses[input.stem().string()];
+  std::vector<std::string> names;
+  for (const fs::path& input : inputs) {
+    const std::string stem = input.stem().string();
+    names.push_back(uses[stem] > 1 ? input.filename().string() : stem);
+  }
+  return names;
+}
+
+Result<void> check_distinct(const std::vector<BuildJob>& jobs) {
+  std::map<fs::path, fs::path> owner;
+  for (const BuildJob& job : jobs) {
+    const auto [found, fresh] = owner.emplace(job.output.lexically_normal(), job.input);
+    if (fresh) continue;
+    return fail(ErrorCode::bad_argument,
+                fmt::format("both {} and {} would be written there", found->second.string(), job.input.string()),
+                job.output.string(), "put {name} into -o, or build them apart");
+  }
+  return {};
+}
+
+// Before a folder exists only the names can be checked.
+Result<void> check_outputs(const BuildJobs& all, const std::vector<fs::path>& inputs) {
+  if (const Result<void> distinct = check_distinct(all.jobs); !distinct) return distinct;
+  const bool folder_exists = all.folder.empty() || is_directory(all.folder);
+  for (const BuildJob& job : all.jobs) {
+    const Result<void> checked = check_output(job.output, inputs);
+    if (!checked && (folder_exists || checked.error().code == ErrorCode::bad_argument)) return checked;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<BuildJobs> build_jobs(const Arguments& arguments) {
+  if (!arguments.has("--output")) return missing_output("build", arguments.inputs.front());
+  const std::string output = arguments.text("--output");
+  const bool into_folder = output.ends_with('/') || is_directory(output);
+  BuildJobs all;
+  all.batch = arguments.inputs.size() > 1 || is_directory(arguments.inputs.front());
+  if (all.batch && !into_folder && output.find("{name}") == std::string::npos) {
+    return fail(ErrorCode::bad_argument, fmt::format("-o {} is one file, but there are several inputs", output), {},
+                "name a folder with a slash at its end, such as -o lods/");
+  }
+  Result<std::vector<fs::path>> inputs = list_inputs(arguments);
+  if (!inputs) return fail(inputs.error());
+  if (into_folder) all.folder = output;
+  const std::string pattern = into_folder ? (fs::path(output) / "{name}.glb").string() : output;
+  const std::vector<std::string> names = output_names(*inputs);
+  for (std::size_t i = 0; i < inputs->size(); ++i) {
+    all.jobs.push_back(BuildJob{(*inputs)[i], replaced(pattern, "{name}", names[i])});
+  }
+  if (const Result<void> checked = check_outputs(all, *inputs); !checked) return fail(checked.error());
+  return all;
+}
+
+}  // namespace lodestone::app

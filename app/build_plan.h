@@ -1,0 +1,47 @@
+// What `lod build` was asked, before any model is read: the targets, and which input goes to which output.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/shared_options.h"
+#include "lodestone/chain/build_ladder.h"
+
+namespace lodestone::app {
+
+struct BuildPlan {
+  std::size_t levels = 0;  ///< 0 = one of the lists below rules
+  std::vector<double> ratios;
+  std::vector<std::size_t> triangles;
+  std::vector<LengthArgument> errors;
+  std::vector<LengthArgument> distances;
+  double pixels = 1;
+  measure::View view;
+  LengthRules lengths;
+  bool keep_border = false;
+  measure::DistanceOptions distance;
+  io::Compression compression = io::Compression::none;
+};
+
+/// Errors: bad_argument (two targets, a value out of range).
+Result<BuildPlan> build_plan(const Arguments& arguments);
+
+/// The options for one model. `notes` gets what a user should know, such as "keeping 10 %".
+Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& model, std::vector<std::string>& notes);
+
+struct BuildJob {
+  std::filesystem::path input, output;
+};
+
+struct BuildJobs {
+  std::vector<BuildJob> jobs;
+  bool batch = false;            ///< several inputs or a directory: the result is a list
+  std::filesystem::path folder;  ///< to be made if missing; empty = none
+};
+
+/// Lists directories and names the outputs. Errors: bad_argument (no output, an output that is an input, two inputs for one
+/// output), cannot_read, cannot_write, empty.
+Result<BuildJobs> build_jobs(const Arguments& arguments);
+
+}  // namespace lodestone::app

@@ -1,0 +1,45 @@
+#include "app/console.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "app/text.h"
+
+namespace lodestone::app {
+
+Console::Console(Talk talk, int threads)
+    : talk_(talk),
+      progress_(talk != Talk::quiet && ::isatty(STDERR_FILENO) == 1),
+      task_(Task::root(progress_.callback(), threads)) {}
+
+void Console::say(std::string_view line) const {
+  progress_.clear();
+  fmt::print(stderr, "{}\n", line);
+}
+
+void Console::note(std::string_view text) const {
+  if (talk_ != Talk::quiet) say("lod: " + printable(text));
+}
+
+void Console::detail(std::string_view text) const {
+  if (talk_ == Talk::verbose) say("lod: " + printable(text));
+}
+
+void Console::error(const Error& error) const { say(error_text(error)); }
+
+void Console::shortfall(std::string_view text) const { say("lod: " + printable(text)); }
+
+void Console::result(std::string_view text) const {
+  progress_.clear();
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+Result<void> Console::finish() const {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return {};
+  return fail(ErrorCode::cannot_write, "the result could not be written", "standard output",
+              "is it closed, or its disk full?");
+}
+
+}  // namespace lodestone::app

@@ -1,0 +1,40 @@
+// What the command says: results to standard output, everything else to standard error.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/progress.h"
+#include "lodestone/base/result.h"
+#include "lodestone/base/task.h"
+
+namespace lodestone::app {
+
+class Console {
+ public:
+  enum class Talk { quiet, normal, verbose };
+  Console(Talk talk, int threads);
+
+  /// The root of all work of this run; reports to the progress bar.
+  const Task& task() const { return task_; }
+  /// The file at work, for the progress bar.
+  void set_title(std::string title) { progress_.set_title(std::move(title)); }
+
+  void note(std::string_view text) const;    ///< unless --quiet
+  void detail(std::string_view text) const;  ///< with --verbose
+  void error(const Error& error) const;      ///< always
+  void shortfall(std::string_view text) const;  ///< always: why a target was not reached
+  /// To standard output. Errors are found by finish().
+  void result(std::string_view text) const;
+  /// Flushes standard output. Errors: cannot_write.
+  Result<void> finish() const;
+
+ private:
+  void say(std::string_view line) const;
+  Talk talk_;
+  mutable Progress progress_;
+  Task task_;
+};
+
+}  // namespace lodestone::app

@@ -1,0 +1,116 @@
+#include "app/input.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "app/foreign.h"
+#include "app/text.h"
+#include "lodestone/io/read.h"
+#include "lodestone/io/write.h"
+
+namespace lodestone::app {
+namespace fs = std::filesystem;
+
+Result<Model> read_input(const fs::path& path, const Console& console, Task task) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    return fail(ErrorCode::bad_argument, "is a directory, but one file is wanted here", path.string(),
+                "name a file in it");
+  }
+  Result<Model> model = io::is_foreign_extension(path.extension().string()) ? read_foreign(path, task)
+                                                                            : io::read_model(path, task);
+  if (!model) return model;
+  for (const std::string& warning : model->warnings) console.note(fmt::format("{}: {}", path.string(), warning));
+  return model;
+}
+
+namespace {
+
+// True if both names are the same file, or would be.
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error) && !error) return true;
+  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+}
+
+// True if writing to `output` could replace `input`; "{level}" stands for digits.
+bool would_overwrite(const fs::path& output, const fs::path& input) {
+  const std::string pattern = output.filename().string();
+  const std::size_t mark = pattern.find("{level}");
+  if (mark == std::string::npos) return same_file(output, input);
+  const std::string name = input.filename().string();
+  const std::string_view head = std::string_view(pattern).substr(0, mark);
+  const std::string_view tail = std::string_view(pattern).substr(mark + std::string_view("{level}").size());
+  if (name.size() <= head.size() + tail.size() || !name.starts_with(head) || !name.ends_with(tail)) return false;
+  const std::string_view middle = std::string_view(name).substr(head.size(), name.size() - head.size() - tail.size());
+  return middle.find_first_not_of("0123456789") == std::string_view::npos &&
+         same_file(output.parent_path() / name, input);
+}
+
+}  // namespace
+
+Result<void> check_output(const fs::path& output, const std::vector<fs::path>& inputs) {
+  const std::string extension = output.extension().string();
+  if (!io::is_writable_extension(extension)) {
+    return fail(ErrorCode::bad_argument,
+                extension.empty() ? "has no extension that names a format"
+                                  : fmt::format("'{}' is no format that we write", extension),
+                output.string(), "end it in .glb, .gltf, .ply, .obj, .stl or .off");
+  }
+  for (const fs::path& input : inputs) {
+    if (would_overwrite(output, input)) {
+      return fail(ErrorCode::bad_argument, "is an input, and inputs are never overwritten", output.string(),
+                  "choose another name for -o");
+    }
+  }
+  const fs::path folder = output.has_parent_path() ? output.parent_path() : ".";
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) {
+    return fail(ErrorCode::cannot_write, "its folder does not exist", output.string(), "make the folder first");
+  }
+  if (fs::is_directory(output, ignored)) {
+    return fail(ErrorCode::cannot_write, "is a directory", output.string(), "name a file in it");
+  }
+  if (::access(folder.c_str(), W_OK) != 0) {
+    return fail(ErrorCode::cannot_write, std::generic_category().message(errno), folder.string(),
+                "choose a folder that you may write to");
+  }
+  return {};
+}
+
+tl::unexpected<Error> missing_output(const std::string& verb, const std::string& input) {
+  const std::string stem = fs::path(input).stem().string();
+  return fail(ErrorCode::bad_argument, fmt::format("{} needs an output", verb), {},
+              fmt::format("add one, such as -o {}_{}.glb", stem, verb == "build" ? "lod" : verb));
+}
+
+Result<std::vector<fs::path>> models_in(const fs::path& directory) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_regular_file(ignored) && io::is_model_extension(entry->path().extension().string())) {
+      files.push_back(entry->path());
+    }
+  }
+  if (error) return fail(ErrorCode::cannot_read, error.message(), directory.string());
+  if (files.empty()) {
+    return fail(ErrorCode::empty, "has no file of a format that we read", directory.string(),
+                fmt::format("known are {}", fmt::join(io::readable_extensions(), " ")));
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace lodestone::app

@@ -1,0 +1,33 @@
+// Getting at inputs and outputs: reading a model, listing a directory, refusing to overwrite an input.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/console.h"
+#include "lodestone/base/result.h"
+#include "lodestone/base/task.h"
+#include "lodestone/core/model.h"
+
+namespace lodestone::app {
+
+/// Reads a model and tells its warnings. Formats read by other people's libraries are read in a child process.
+/// Errors: those of io::read_model; bad_argument for a directory, as the verb takes a single file.
+Result<Model> read_input(const std::filesystem::path& path, const Console& console, Task task);
+
+/// Checks before the work begins that `output` can be written: a format we write, an existing folder with permission,
+/// not a directory, and none of `inputs`. "{level}" in the name stands for any number.
+/// Errors: bad_argument, cannot_write.
+Result<void> check_output(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs);
+
+/// What the error says when -o is missing.
+tl::unexpected<Error> missing_output(const std::string& verb, const std::string& input);
+
+/// The files of a directory that are models by their extension, by name. Errors: cannot_read, empty.
+Result<std::vector<std::filesystem::path>> models_in(const std::filesystem::path& directory);
+
+/// Largest resident size of this process so far, bytes.
+std::uint64_t peak_memory_bytes();
+
+}  // namespace lodestone::app

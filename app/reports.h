@@ -1,0 +1,92 @@
+// What the verbs found out, as plain figures: tables and JSON are made from these.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lodestone/chain/build_ladder.h"
+#include "lodestone/core/level.h"
+#include "lodestone/core/topology.h"
+#include "lodestone/measure/distance.h"
+
+namespace lodestone::app {
+
+struct LevelReport {
+  std::size_t level = 0;
+  std::size_t triangles = 0;
+  LevelError error;
+  double switch_distance = 0;  ///< model units
+  std::uint64_t bytes = 0;
+  std::string file;
+  double seconds = 0;
+};
+
+struct BuildReport {
+  std::string input;
+  std::string failure;  ///< the error's line; empty = it worked and the rest holds
+  std::size_t triangles = 0;
+  double diagonal = 0;
+  std::string unit;  ///< empty = the model has none
+  std::vector<LevelReport> levels;
+  double read_seconds = 0, levels_seconds = 0, measure_seconds = 0, write_seconds = 0, total_seconds = 0;
+  std::uint64_t peak_memory_bytes = 0;
+  std::uint64_t total_bytes = 0;
+  std::vector<std::string> warnings;
+  std::vector<chain::Shortfall> shortfalls;
+};
+
+struct SimplifyReport {
+  std::string input, output, unit;
+  std::size_t triangles_in = 0, triangles = 0;
+  LevelError error;
+  std::string stop_reason, shortfall;
+  simplify::LockCounts locked;
+  double read_seconds = 0, simplify_seconds = 0, measure_seconds = 0, write_seconds = 0;
+  std::uint64_t bytes = 0, peak_memory_bytes = 0;
+  std::vector<std::string> warnings;
+};
+
+struct MeasureReport {
+  std::string a, b, unit;
+  measure::Distance distance;
+  double seconds = 0;
+};
+
+struct AttributeReport {
+  std::string name, semantic, type;
+  std::uint32_t components = 0;
+  bool normalized = false;
+};
+
+/// Counts are sums over what the default scene draws: a mesh placed twice counts twice.
+struct InfoReport {
+  std::string path, unit;
+  Topology topology;
+  std::uint64_t file_vertices = 0, file_triangles = 0;
+  std::uint64_t meshes = 0, instances = 0, levels = 1;
+  double diagonal = 0, area = 0, volume = 0;
+  std::array<double, 3> min{}, max{};
+  std::vector<AttributeReport> attributes;
+  std::vector<std::string> materials;
+  std::vector<std::string> warnings;
+};
+
+struct ConvertReport {
+  std::string input;
+  std::size_t triangles = 0;
+  std::vector<std::string> files;
+  std::uint64_t bytes = 0;
+  double read_seconds = 0, write_seconds = 0;
+  std::vector<std::string> warnings;
+};
+
+struct SampleReport {
+  std::string sample, file;
+  std::size_t triangles = 0, vertices = 0, instances = 0;
+  std::uint64_t bytes = 0;
+  double seconds = 0;
+};
+
+}  // namespace lodestone::app

@@ -1,0 +1,166 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/input.h"
+#include "app/json.h"
+#include "app/shared_options.h"
+#include "app/stopwatch.h"
+#include "app/table.h"
+#include "app/text.h"
+#include "app/verbs.h"
+#include "lodestone/base/units.h"
+
+namespace lodestone::app {
+namespace {
+
+// What was asked, before the model is known.
+struct SimplifyPlan {
+  std::vector<double> ratio;
+  std::vector<std::size_t> triangles;
+  std::vector<LengthArgument> error;
+  LengthRules lengths;
+  bool keep_border = false;
+  measure::DistanceOptions distance;
+};
+
+Result<void> check_one_target(const Arguments& arguments) {
+  int targets = 0;
+  for (const char* option : {"--ratio", "--triangles", "--error"}) {
+    if (!arguments.has(option)) continue;
+    ++targets;
+    if (arguments.text(option).find(',') != std::string::npos) {
+      return fail(ErrorCode::bad_argument, fmt::format("{} takes one value here", option), {},
+                  "'lod build' makes several levels");
+    }
+  }
+  if (targets == 1) return {};
+  return fail(ErrorCode::bad_argument,
+              targets == 0 ? "simplify needs a target" : "simplify takes one target, not several", {},
+              "give one of --triangles N, --ratio 10%, --error 0.1%");
+}
+
+Result<SimplifyPlan> plan_of(const Arguments& arguments) {
+  if (const Result<void> one = check_one_target(arguments); !one) return fail(one.error());
+  SimplifyPlan plan;
+  const Result<LengthRules> lengths = length_rules(arguments);
+  if (!lengths) return fail(lengths.error());
+  plan.lengths = *lengths;
+  if (arguments.has("--ratio")) {
+    Result<std::vector<double>> ratio = ratio_list(arguments, "--ratio");
+    if (!ratio) return fail(ratio.error());
+    plan.ratio = std::move(*ratio);
+  }
+  if (arguments.has("--triangles")) {
+    Result<std::vector<std::size_t>> triangles = arguments.count_list("--triangles");
+    if (!triangles) return fail(triangles.error());
+    plan.triangles = std::move(*triangles);
+  }
+  if (arguments.has("--error")) {
+    Result<std::vector<LengthArgument>> error = length_list(arguments, "--error", plan.lengths);
+    if (!error) return fail(error.error());
+    plan.error = std::move(*error);
+  }
+  plan.keep_border = arguments.has("--keep-border");
+  const Result<measure::DistanceOptions> distance = distance_options(arguments);
+  if (!distance) return fail(distance.error());
+  plan.distance = *distance;
+  return plan;
+}
+
+Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const Model& model, std::size_t triangles,
+                                                const Console& console) {
+  chain::SimplifyModelOptions options;
+  options.keep_border = plan.keep_border;
+  options.distance = plan.distance;
+  if (!plan.ratio.empty()) {
+    console.note(fmt::format("keeping {} of {} triangles", percent(plan.ratio[0]), with_separators(triangles)));
+    options.target_triangles =
+        std::max<std::size_t>(1, static_cast<std::size_t>(plan.ratio[0] * static_cast<double>(triangles) + 0.5));
+  } else if (!plan.triangles.empty()) {
+    options.target_triangles = plan.triangles[0];
+  } else {
+    const double diagonal = bounds_of(model).diagonal();
+    const Result<std::vector<double>> errors = to_model_units(plan.error, model, diagonal);
+    if (!errors) return fail(errors.error());
+    options.max_error = errors->front();
+    console.detail(fmt::format("--error {} is {} in model units (diagonal {})", plan.error[0].text,
+                               short_number(options.max_error), short_number(diagonal)));
+  }
+  return options;
+}
+
+std::string table_of(const SimplifyReport& report) {
+  const std::string unit = report.unit.empty() ? "" : " " + report.unit;
+  const LevelError& error = report.error;
+  Table table;
+  table.add_column("", Table::Align::left);
+  table.add_column("", Table::Align::left);
+  const double share = report.triangles_in == 0 ? 0 : static_cast<double>(report.triangles) / static_cast<double>(report.triangles_in);
+  table.add_row({"triangles", fmt::format("{} of {} ({})", with_separators(report.triangles),
+                                          with_separators(report.triangles_in), percent(share))});
+  table.add_row({"error", fmt::format("{}{} ({} of the diagonal, {})", short_number(error.error), unit,
+                                      percent(error.relative(error.error)), to_string(error.kind))});
+  table.add_row({"mean error", fmt::format("{}{} ({})", short_number(error.mean_error), unit,
+                                           percent(error.relative(error.mean_error)))});
+  table.add_row({"stopped", report.stop_reason});
+  table.add_row({"file", fmt::format("{} ({})", printable(report.output), human_bytes(report.bytes))});
+  table.add_row({"seconds", fmt::format("read {}, simplify {}, measure {}, write {}", seconds_text(report.read_seconds),
+                                        seconds_text(report.simplify_seconds), seconds_text(report.measure_seconds),
+                                        seconds_text(report.write_seconds))});
+  return table.text();
+}
+
+}  // namespace
+
+Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
+  const std::string& input = arguments.inputs.front();
+  const Result<SimplifyPlan> plan = plan_of(arguments);
+  if (!plan) return fail(plan.error());
+  if (!arguments.has("--output")) return missing_output("simplify", input);
+  SimplifyReport report;
+  report.input = input;
+  report.output = arguments.text("--output");
+  if (const Result<void> checked = check_output(report.output, {input}); !checked) return fail(checked.error());
+
+  Stopwatch watch;
+  Result<Model> model = read_input(input, console, console.task().part(0.15, "reading"));
+  if (!model) return fail(model.error());
+  apply_unit(*model, plan->lengths);
+  report.read_seconds = watch.lap();
+  report.triangles_in = drawn_triangles(*model);
+  report.unit = unit_name(model->meters_per_unit);
+  report.warnings = model->warnings;
+
+  const Result<chain::SimplifyModelOptions> options = options_for(*plan, *model, report.triangles_in, console);
+  if (!options) return fail(options.error());
+  const Result<chain::SimplifyModelResult> result =
+      chain::simplify_model(*model, *options, console.task().part(0.75, "simplifying"));
+  if (!result) return fail(result.error());
+  watch.lap();
+  const Result<io::WriteReport> written =
+      io::write_model(result->level.model, report.output, io::WriteOptions{compression_of(arguments), {}},
+                      console.task().part(0.1, "writing"));
+  if (!written) return fail(written.error());
+  report.write_seconds = watch.lap();
+
+  report.triangles = result->level.triangles;
+  report.error = result->level.error;
+  report.stop_reason = simplify::to_string(result->stop);
+  report.shortfall = result->shortfall;
+  report.locked = result->locked;
+  report.simplify_seconds = result->simplify_seconds;
+  report.measure_seconds = result->measure_seconds;
+  report.bytes = written->total_bytes;
+  report.peak_memory_bytes = peak_memory_bytes();
+  for (const std::string& warning : written->warnings) {
+    console.note(fmt::format("{}: {}", report.output, warning));
+    report.warnings.push_back(warning);
+  }
+  console.result(arguments.has("--json") ? to_json(report) : table_of(report));
+  if (report.shortfall.empty()) return ExitCode::done;
+  console.shortfall(fmt::format("{}: {}", input, report.shortfall));
+  return ExitCode::fell_short;
+}
+
+}  // namespace lodestone::app

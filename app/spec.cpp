@@ -1,0 +1,167 @@
+#include "app/spec.h"
+
+#include <algorithm>
+
+#include "app/shared_options.h"
+#include "app/verbs.h"
+
+namespace lodestone::app {
+namespace {
+
+constexpr std::uint64_t kBuildSamples = measure::DistanceOptions{}.samples;
+constexpr std::uint64_t kMeasureSamples = 1'000'000;
+
+InputSpec one_model() { return {"INPUT", 1, 1, {}, Completion::file}; }
+
+VerbSpec build_spec() {
+  return {"build",
+          "Makes a ladder of levels from a model and measures each level's error against the original.",
+          {"INPUT...", 1, kAnyNumber, {}, Completion::file},
+          {ladder_target_group(), view_group(), length_group(), method_group(), measuring_group(kBuildSamples),
+           output_group(true), general_group()},
+          {{"lod build statue.ply -o statue.glb", "five levels in one GLB (MSFT_lod), each with half the triangles"},
+           {"lod build statue.ply -o statue_LOD{level}.obj --error 0.05%,0.2%,1%",
+            "a file a level, each within a measured error"},
+           {"lod build models/ -o lods/ --ratio 50%,10% --json", "every model in a folder"}},
+          "OUTPUT is name.glb or name.gltf (all levels in one file), name_LOD{level}.obj (any format, a file a level), or a "
+          "folder with a slash at its end, where each input becomes name.glb. Several inputs, or a folder of them, need "
+          "a folder; a bad file is told and the others go on. In OUTPUT {name} stands for the input's name.",
+          run_build};
+}
+
+VerbSpec simplify_spec() {
+  return {"simplify",
+          "Makes one coarser mesh, down to a count, a share or a measured error.",
+          one_model(),
+          {single_target_group(), length_group(), method_group(), measuring_group(kBuildSamples), output_group(true),
+           general_group()},
+          {{"lod simplify statue.ply -o small.ply --triangles 5000", "at most 5,000 triangles"},
+           {"lod simplify statue.ply -o small.glb --error 0.1%", "as coarse as 0.1 % of the diagonal allows"},
+           {"lod simplify statue.ply -o small.obj --ratio 10% --json", "keep a tenth, figures as JSON"}},
+          "",
+          run_simplify};
+}
+
+VerbSpec measure_spec() {
+  return {"measure",
+          "Measures the distance between two surfaces, both ways; A is the original.",
+          {"A B", 2, 2, {}, Completion::file},
+          {measuring_group(kMeasureSamples), unit_group(), result_group(), general_group()},
+          {{"lod measure statue.ply small.ply", "how far apart they are"},
+           {"lod measure statue.ply small.ply --samples 200000 --json", "fewer samples, figures as JSON"},
+           {"lod measure tower.glb tower.ply --seed 7", "scenes are measured as drawn, all instances"}},
+          "Maxima are over the samples and all vertices, means over area-weighted samples. Relative figures are divided by "
+          "the diagonal of A's bounding box.",
+          run_measure};
+}
+
+VerbSpec info_spec() {
+  return {"info",
+          "Counts what a model has: triangles, pieces, borders, defects, attributes, materials, levels.",
+          one_model(),
+          {unit_group(), result_group(), general_group()},
+          {{"lod info statue.ply", "is it closed, how many pieces"},
+           {"lod info tower.glb", "what a scene draws; instances count each time"},
+           {"lod info statue.glb --json", "all figures as JSON"}},
+          "Counts are taken after welding vertices at equal positions; the counts of the file stand beside.",
+          run_info};
+}
+
+VerbSpec convert_spec() {
+  return {"convert",
+          "Writes a model in another format.",
+          {"INPUT [OUTPUT]", 1, 2, {}, Completion::file},
+          {output_group(true), general_group()},
+          {{"lod convert statue.ply statue.stl", "by the names' endings"},
+           {"lod convert tower.glb -o tower.ply", "instances are flattened where the format has none"},
+           {"lod convert statue.ply -o packed.glb --compress meshopt", "a smaller GLB"}},
+          "",
+          run_convert};
+}
+
+VerbSpec sample_spec() {
+  return {"sample",
+          "Makes a model to try things on: the same file every time, on every machine.",
+          {"SAMPLE", 1, 1, {"sphere", "statue", "tower", "terrain"}, Completion::choices},
+          {{"Sample",
+            {{"--triangles", "", "N", "", "triangles",
+              "the nearest possible count (without: statue and terrain 100000, tower 20000)", {}, Completion::none},
+             {"--level", "", "N", "5", "subdivisions", "sphere: an icosphere of 20 * 4^N triangles", {}, Completion::none},
+             {"--seed", "", "S", "1", "", "another statue or terrain", {}, Completion::none}}},
+           output_group(false),
+           general_group()},
+          {{"lod sample statue -o statue.ply", "a closed bust of 100,000 triangles, rough like a scan"},
+           {"lod sample sphere --level 6 -o sphere.glb", "an icosphere of 81,920 triangles"},
+           {"lod sample tower --triangles 50000 -o tower.glb", "a lattice tower of instanced struts and discs"}},
+          "statue and terrain are made up of noise (--seed); terrain has open borders and texture coordinates.",
+          run_sample};
+}
+
+VerbSpec help_spec() {
+  return {"help",
+          "Tells what a verb does and which options it takes.",
+          {"[VERB]", 0, 1, {}, Completion::choices},
+          {{"Output", {{"--man", "", "", "", "", "the manual page in roff instead", {}, Completion::none}}},
+           general_group()},
+          {{"lod help", "the verbs"},
+           {"lod help build", "one verb, the same as lod build --help"},
+           {"lod help --man > lod.1", "the manual page as a file"}},
+          "",
+          run_help};
+}
+
+VerbSpec completion_spec() {
+  return {"completion",
+          "Prints the completion script of a shell.",
+          {"SHELL", 1, 1, {"bash", "zsh", "fish"}, Completion::choices},
+          {general_group()},
+          {{"lod completion bash > lod.bash", "source it, or put it into /etc/bash_completion.d"},
+           {"lod completion zsh > _lod", "put it into a folder of $fpath"},
+           {"lod completion fish > lod.fish", "put it into ~/.config/fish/completions"}},
+          "",
+          run_completion};
+}
+
+std::vector<VerbSpec> make_verbs() {
+  std::vector<VerbSpec> all{build_spec(),   simplify_spec(), measure_spec(), info_spec(),
+                            convert_spec(), sample_spec(),   help_spec(),    completion_spec()};
+  std::vector<std::string> names;
+  for (const VerbSpec& verb : all) names.push_back(verb.name);
+  for (VerbSpec& verb : all) {
+    if (verb.name == "help") verb.inputs.choices = names;
+  }
+  return all;
+}
+
+}  // namespace
+
+const std::vector<VerbSpec>& verbs() {
+  static const std::vector<VerbSpec> all = make_verbs();
+  return all;
+}
+
+const VerbSpec* find_verb(std::string_view name) {
+  const auto& all = verbs();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const VerbSpec& verb) { return verb.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+const OptionSpec* find_option(const VerbSpec& verb, std::string_view name) {
+  for (const OptionGroup& group : verb.groups) {
+    for (const OptionSpec& option : group.options) {
+      if (option.name == name || (!option.short_name.empty() && option.short_name == name)) return &option;
+    }
+  }
+  return nullptr;
+}
+
+const std::vector<Example>& exit_codes() {
+  static const std::vector<Example> codes{{"0", "done"},
+                                          {"1", "the work failed: input, output or memory"},
+                                          {"2", "wrong command line"},
+                                          {"3", "written, but the asked target was not reached; the reason is told"},
+                                          {"130", "interrupted; nothing half done is left"}};
+  return codes;
+}
+
+}  // namespace lodestone::app

@@ -1,0 +1,13 @@
+// Base64 (RFC 4648), as data URIs have it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace lodestone::io {
+
+/// The bytes, or nothing if a character is not of the alphabet or the length cannot be. Padding may be missing. O(n).
+std::optional<std::string> decode_base64(std::string_view text);
+
+}  // namespace lodestone::io

@@ -1,0 +1,317 @@
+// From a file's bytes to a document: container, JSON, buffers, external images, buffer views. Every count is checked
+// against the bytes that are there.
+#include "lodestone/io/gltf_document.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "lodestone/base/file.h"
+#include "lodestone/io/gltf_detail.h"
+#include "lodestone/io/meshopt_detail.h"
+#include "lodestone/io/uri_detail.h"
+
+namespace lodestone::io {
+
+Document::Document(std::unique_ptr<const Data> data) : data_(std::move(data)) {}
+Document::~Document() = default;
+std::size_t Document::node_count() const { return array_member(data_->json, "nodes").size(); }
+std::size_t Document::material_count() const { return array_member(data_->json, "materials").size(); }
+std::size_t Document::animation_count() const { return array_member(data_->json, "animations").size(); }
+std::size_t Document::skin_count() const { return array_member(data_->json, "skins").size(); }
+
+std::string place(const Document::Data& data, std::string_view what, std::size_t index) {
+  return fmt::format("{}: {} {}", data.name, what, index);
+}
+
+std::string sniff_mime(std::string_view bytes) {
+  const auto starts = [&](std::string_view magic) { return bytes.substr(0, magic.size()) == magic; };
+  if (starts("\x89PNG")) return "image/png";
+  if (starts("\xff\xd8\xff")) return "image/jpeg";
+  if (starts("RIFF") && bytes.substr(8, 4) == "WEBP") return "image/webp";
+  if (starts("\xabKTX 20")) return "image/ktx2";
+  if (starts("DDS ")) return "image/vnd-ms.dds";
+  return {};
+}
+
+namespace {
+
+ByteSpan as_bytes_of(std::string_view text) { return std::as_bytes(std::span(text.data(), text.size())); }
+
+std::string_view as_text(ByteSpan bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+
+// Everything that loading shares.
+struct Loader {
+  Document::Data& data;
+  std::filesystem::path folder;
+  bool has_folder = false;
+  std::vector<std::string>& warnings;
+  Task task;
+  Budget unfolded;                        // bytes that compressed views may unfold to
+  std::map<std::string, ByteSpan> files;  // external files already read
+  std::string_view bin;
+  bool has_bin = false;
+};
+
+ByteSpan keep(Document::Data& data, std::string bytes) {
+  data.file_bytes += bytes.size();
+  data.storage.push_back(std::make_shared<const std::string>(std::move(bytes)));
+  return as_bytes_of(*data.storage.back());
+}
+
+Result<void> check_asset(const Document::Data& data) {
+  if (!data.json.is_object()) return fail(ErrorCode::bad_format, "the JSON is not an object", data.name, "is it glTF?");
+  const Json* asset = member(data.json, "asset");
+  const std::string version = asset != nullptr ? string_member(*asset, "version") : "";
+  if (version.empty()) {
+    return fail(ErrorCode::bad_format, "asset.version is missing", data.name, "is it a glTF 2.0 file?");
+  }
+  const std::string least = string_member(*asset, "minVersion");
+  if (version.substr(0, 2) != "2." || (!least.empty() && least != "2.0")) {
+    return fail(ErrorCode::unsupported, fmt::format("glTF version {}, only 2.0 is read", least.empty() ? version : least),
+                data.name, "export it again as glTF 2.0");
+  }
+  return {};
+}
+
+// The first `limit` bytes of the file at most.
+Result<std::string> read_part(const std::filesystem::path& path, std::uint64_t limit) {
+  Result<InputFile> file = InputFile::open(path);
+  if (!file) return fail(file.error());
+  if (limit >= file->size()) return read_file(path);
+  std::string bytes(static_cast<std::size_t>(limit), '\0');
+  const Result<std::size_t> got = file->read(std::as_writable_bytes(std::span(bytes)));
+  if (!got) return fail(got.error());
+  bytes.resize(*got);
+  return bytes;
+}
+
+Result<ByteSpan> external_file(Loader& loader, const std::string& uri, std::uint64_t limit, const std::string& where) {
+  if (!loader.has_folder) {
+    return fail(ErrorCode::bad_format, fmt::format("names the file '{}', but was read from memory", uri), where);
+  }
+  const Result<std::filesystem::path> path = resolve_uri(loader.folder, uri, where);
+  if (!path) return fail(path.error());
+  const auto known = loader.files.find(path->string());
+  if (known != loader.files.end() && known->second.size() >= limit) return known->second;
+  Result<std::string> bytes = read_part(*path, limit);
+  if (!bytes) return fail(bytes.error());
+  return loader.files[path->string()] = keep(loader.data, std::move(*bytes));
+}
+
+bool is_fallback(const Json& buffer) {
+  const Json* extensions = member(buffer, "extensions");
+  const Json* meshopt = extensions != nullptr ? member(*extensions, kMeshopt) : nullptr;
+  const Json* fallback = meshopt != nullptr ? member(*meshopt, "fallback") : nullptr;
+  return fallback != nullptr && fallback->is_boolean() && fallback->get<bool>();
+}
+
+Result<ByteSpan> load_buffer(Loader& loader, std::size_t index, Json& buffer) {
+  const std::string where = place(loader.data, "buffer", index);
+  const Result<std::uint64_t> length = uint_member(buffer, "byteLength", 0, where);
+  if (!length) return fail(length.error());
+  const std::string uri = string_member(buffer, "uri");
+  ByteSpan bytes;
+  if (uri.empty()) {
+    if (index == 0 && loader.has_bin) {
+      bytes = as_bytes_of(loader.bin);
+    } else if (is_fallback(buffer)) {
+      return bytes;
+    } else {
+      return fail(ErrorCode::bad_format, "has no uri, and no binary chunk stands for it", where, "is the file cut off?");
+    }
+  } else if (is_data_uri(uri)) {
+    Result<DataUri> decoded = decode_data_uri(uri, where);
+    if (!decoded) return fail(decoded.error());
+    bytes = keep(loader.data, std::move(decoded->bytes));
+    buffer.erase("uri");
+  } else {
+    const Result<ByteSpan> file = external_file(loader, uri, *length, where);
+    if (!file) return fail(file.error());
+    bytes = *file;
+  }
+  if (*length > bytes.size()) {
+    return fail(ErrorCode::bad_format, fmt::format("byteLength is {}, but {} bytes are there", *length, bytes.size()), where,
+                "is the file cut off?");
+  }
+  return bytes.first(static_cast<std::size_t>(*length));
+}
+
+Result<void> load_buffers(Loader& loader) {
+  Json* buffers = const_cast<Json*>(member(loader.data.json, "buffers"));
+  if (buffers == nullptr || !buffers->is_array()) return {};
+  for (std::size_t i = 0; i < buffers->size(); ++i) {
+    if (loader.task.cancelled()) return cancelled_error("reading");
+    const Result<ByteSpan> bytes = load_buffer(loader, i, (*buffers)[i]);
+    if (!bytes) return fail(bytes.error());
+    loader.data.buffers.push_back(*bytes);
+  }
+  return {};
+}
+
+Result<void> load_images(Loader& loader) {
+  const Json& images = array_member(loader.data.json, "images");
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (loader.task.cancelled()) return cancelled_error("reading");
+    const std::string uri = string_member(images[i], "uri");
+    if (uri.empty() || is_data_uri(uri) || !loader.has_folder) continue;
+    const std::string where = place(loader.data, "image", i);
+    const Result<std::filesystem::path> path = resolve_uri(loader.folder, uri, where);
+    if (!path) return fail(path.error());
+    const Result<ByteSpan> file = external_file(loader, uri, UINT64_MAX, where);
+    if (!file) {
+      loader.warnings.push_back(fmt::format("image {} ('{}') could not be read: {}", i, uri, file.error().what));
+      continue;
+    }
+    std::string mime = sniff_mime(as_text(*file));
+    if (mime.empty()) mime = string_member(images[i], "mimeType");
+    loader.data.images.push_back({i, std::move(mime), *file});
+  }
+  return {};
+}
+
+// A range of a buffer as a bufferView or its meshopt extension names it.
+Result<ByteSpan> buffer_range(const Loader& loader, const Json& range, const std::string& where) {
+  const auto& buffers = loader.data.buffers;
+  const Result<std::size_t> buffer = index_member(range, "buffer", buffers.size(), "buffers", where);
+  if (!buffer) return fail(buffer.error());
+  const Result<std::uint64_t> offset = uint_member(range, "byteOffset", 0, where);
+  if (!offset) return fail(offset.error());
+  const Result<std::uint64_t> length = uint_member(range, "byteLength", 0, where);
+  if (!length) return fail(length.error());
+  const ByteSpan bytes = buffers[*buffer];
+  if (*offset > bytes.size() || *length > bytes.size() - *offset) {
+    return fail(ErrorCode::bad_format,
+                fmt::format("bytes {} to {} are named, buffer {} has {}", *offset, *offset + *length, *buffer, bytes.size()),
+                where, "is the file cut off?");
+  }
+  return bytes.subspan(static_cast<std::size_t>(*offset), static_cast<std::size_t>(*length));
+}
+
+Result<View> decode_view(Loader& loader, const Json& meshopt, std::size_t stride, const std::string& where) {
+  View view;
+  const Result<ByteSpan> range = buffer_range(loader, meshopt, where);
+  if (!range) return fail(range.error());
+  const Result<std::uint64_t> count = uint_member(meshopt, "count", 0, where);
+  if (!count) return fail(count.error());
+  const Result<std::uint64_t> size = uint_member(meshopt, "byteStride", 0, where);
+  if (!size) return fail(size.error());
+  const std::string mode = string_member(meshopt, "mode"), filter = string_member(meshopt, "filter");
+  MeshoptMode m = MeshoptMode::attributes;
+  if (mode == "TRIANGLES") {
+    m = MeshoptMode::triangles;
+  } else if (mode == "INDICES") {
+    m = MeshoptMode::indices;
+  } else if (mode != "ATTRIBUTES") {
+    return fail(ErrorCode::bad_format, fmt::format("{} mode '{}' is unknown", kMeshopt, mode), where);
+  }
+  MeshoptFilter f = MeshoptFilter::none;
+  if (filter == "OCTAHEDRAL") {
+    f = MeshoptFilter::octahedral;
+  } else if (filter == "QUATERNION") {
+    f = MeshoptFilter::quaternion;
+  } else if (filter == "EXPONENTIAL") {
+    f = MeshoptFilter::exponential;
+  } else if (!filter.empty() && filter != "NONE") {
+    return fail(ErrorCode::bad_format, fmt::format("{} filter '{}' is unknown", kMeshopt, filter), where);
+  }
+  Result<std::string> bytes = decode_meshopt(*range, static_cast<std::size_t>(*count), static_cast<std::size_t>(*size), m,
+                                             f, where);
+  if (!bytes) return fail(bytes.error());
+  if (!loader.unfolded.take(bytes->size())) {
+    return fail(ErrorCode::bad_format, "the compressed views unfold to more than 64 times the file", where);
+  }
+  loader.data.storage.push_back(std::make_shared<const std::string>(std::move(*bytes)));
+  view.bytes = as_bytes_of(*loader.data.storage.back());
+  view.stride = stride;
+  view.decoded = true;
+  view.compressed = *range;
+  return view;
+}
+
+Result<View> load_view(Loader& loader, const Json& json, std::size_t index) {
+  const std::string where = place(loader.data, "bufferView", index);
+  const Result<std::uint64_t> stride = uint_member(json, "byteStride", 0, where);
+  if (!stride) return fail(stride.error());
+  if (*stride > 65536) return fail(ErrorCode::bad_format, fmt::format("byteStride is {}, at most 252", *stride), where);
+  const Json* extensions = member(json, "extensions");
+  const Json* meshopt = extensions != nullptr ? member(*extensions, kMeshopt) : nullptr;
+  if (meshopt != nullptr) {
+    Result<std::size_t> buffer = index_member(json, "buffer", loader.data.buffers.size(), "buffers", where);
+    if (!buffer) return fail(buffer.error());
+    const bool has_fallback = !loader.data.buffers[*buffer].empty();
+    if (has_meshopt() || !has_fallback) return decode_view(loader, *meshopt, static_cast<std::size_t>(*stride), where);
+  }
+  const Result<ByteSpan> bytes = buffer_range(loader, json, where);
+  if (!bytes) return fail(bytes.error());
+  View view;
+  view.bytes = *bytes;
+  view.stride = static_cast<std::size_t>(*stride);
+  return view;
+}
+
+Result<void> load_views(Loader& loader) {
+  const Json& views = array_member(loader.data.json, "bufferViews");
+  loader.unfolded.left = loader.data.file_bytes * 64;
+  loader.data.views.reserve(views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (loader.task.cancelled()) return cancelled_error("reading");
+    Result<View> view = load_view(loader, views[i], i);
+    if (!view) return fail(view.error());
+    loader.data.views.push_back(std::move(*view));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Document::Data>> load_document(std::string bytes, std::string name,
+                                                      const std::filesystem::path& path,
+                                                      std::vector<std::string>& warnings, const Task& task) {
+  auto data = std::make_unique<Document::Data>();
+  data->name = std::move(name);
+  data->path = path;
+  if (bytes.empty()) return fail(ErrorCode::bad_format, "the file is empty", data->name, "export the model again");
+  keep(*data, std::move(bytes));
+  std::string_view text = *data->storage.front();
+  Loader loader{*data, path.parent_path(), !path.empty(), warnings, task, {}, {}, {}, false};
+  if (is_glb(text)) {
+    const Result<GlbParts> parts = split_glb(text, data->name, warnings);
+    if (!parts) return fail(parts.error());
+    text = parts->json;
+    loader.bin = parts->bin;
+    loader.has_bin = parts->bin.data() != nullptr;
+  }
+  Result<Json> json = parse_json(text, data->name);
+  if (!json) return fail(json.error());
+  data->json = std::move(*json);
+  if (const auto good = check_asset(*data); !good) return fail(good.error());
+  if (const auto good = load_buffers(loader); !good) return fail(good.error());
+  if (const auto good = load_images(loader); !good) return fail(good.error());
+  if (const auto good = load_views(loader); !good) return fail(good.error());
+  return data;
+}
+
+ImageBytes image_bytes(const Document::Data& data, std::size_t image) {
+  const Json& images = array_member(data.json, "images");
+  if (image >= images.size()) return {};
+  for (const ExternalImage& external : data.images) {
+    if (external.image == image) return {std::string(as_text(external.bytes)), external.mime};
+  }
+  const Json& json = images[image];
+  ImageBytes out;
+  if (const Json* view = member(json, "bufferView"); view != nullptr) {
+    const std::optional<std::uint64_t> index = as_uint(*view);
+    if (!index || *index >= data.views.size()) return {};
+    out.bytes = as_text(data.views[static_cast<std::size_t>(*index)].bytes);
+  } else if (const std::string uri = string_member(json, "uri"); is_data_uri(uri)) {
+    Result<DataUri> decoded = decode_data_uri(uri, "");
+    if (!decoded) return {};
+    out.bytes = std::move(decoded->bytes);
+  }
+  out.mime = sniff_mime(out.bytes);
+  if (out.mime.empty()) out.mime = string_member(json, "mimeType");
+  return out;
+}
+
+}  // namespace lodestone::io

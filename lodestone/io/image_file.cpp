@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "lodestone/base/file.h"
+#include "lodestone/io/image_file_detail.h"
+
+namespace lodestone::io {
+
+std::string image_mime(std::span<const std::byte> encoded) {
+  const std::string_view head(reinterpret_cast<const char*>(encoded.data()), std::min<std::size_t>(encoded.size(), 16));
+  if (head.starts_with("\x89PNG\r\n")) return "image/png";
+  if (head.starts_with("\xff\xd8\xff")) return "image/jpeg";
+  if (head.starts_with("RIFF") && head.size() >= 12 && head.substr(8, 4) == "WEBP") return "image/webp";
+  if (head.starts_with("GIF8")) return "image/gif";
+  if (head.starts_with("BM")) return "image/bmp";
+  if (head.starts_with(std::string_view("II*\0", 4)) || head.starts_with(std::string_view("MM\0*", 4))) {
+    return "image/tiff";
+  }
+  if (head.starts_with("\xabKTX 20")) return "image/ktx2";
+  if (head.starts_with("DDS ")) return "image/vnd-ms.dds";
+  return {};
+}
+
+std::string_view image_extension(std::string_view mime) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kExtensions{{{"image/png", ".png"},
+                                                                                      {"image/jpeg", ".jpg"},
+                                                                                      {"image/webp", ".webp"},
+                                                                                      {"image/gif", ".gif"},
+                                                                                      {"image/bmp", ".bmp"},
+                                                                                      {"image/tiff", ".tif"},
+                                                                                      {"image/ktx2", ".ktx2"},
+                                                                                      {"image/vnd-ms.dds", ".dds"}}};
+  for (const auto& [type, extension] : kExtensions) {
+    if (type == mime) return extension;
+  }
+  return {};
+}
+
+std::optional<std::filesystem::path> path_inside(const std::filesystem::path& folder, std::string_view name) {
+  std::string spelt(name);
+  std::replace(spelt.begin(), spelt.end(), '\\', '/');
+  const bool has_drive = spelt.size() > 1 && spelt[1] == ':';
+  if (spelt.empty() || has_drive || spelt.find('\0') != std::string::npos) return std::nullopt;
+  const std::filesystem::path relative = std::filesystem::path(spelt).lexically_normal();
+  if (relative.is_absolute() || *relative.begin() == ".." || relative == ".") return std::nullopt;
+  return folder / relative;
+}
+
+std::shared_ptr<const Image> load_image_near(const std::filesystem::path& folder, std::string_view name,
+                                             std::vector<std::string>& warnings) {
+  const auto image = std::make_shared<Image>();
+  const std::string_view bare = name.substr(name.find_last_of("/\\") + 1);
+  image->name = bare;
+  const auto is_file = [](const std::optional<std::filesystem::path>& path) {
+    std::error_code ignored;
+    return path && std::filesystem::is_regular_file(*path, ignored);
+  };
+  std::optional<std::filesystem::path> path = path_inside(folder, name);
+  if (!is_file(path)) path = path_inside(folder, bare);
+  if (!is_file(path)) {
+    warnings.push_back(fmt::format("the texture '{}' was not found in the model's folder", name));
+    return image;
+  }
+  Result<std::string> bytes = read_file(*path);
+  if (!bytes) {
+    warnings.push_back(fmt::format("the texture '{}' could not be read: {}", name, bytes.error().what));
+    return image;
+  }
+  const auto as_bytes = std::as_bytes(std::span(*bytes));
+  image->mime = image_mime(as_bytes);
+  if (image->mime.empty()) {
+    warnings.push_back(fmt::format("the texture '{}' is not an image of a known type", name));
+    return image;
+  }
+  image->encoded.assign(as_bytes.begin(), as_bytes.end());
+  return image;
+}
+
+}  // namespace lodestone::io

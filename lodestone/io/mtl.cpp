@@ -1,0 +1,122 @@
+#include "lodestone/io/mtl.h"
+
+#include <algorithm>
+#include <map>
+
+#include "lodestone/io/image_file_detail.h"
+#include "lodestone/io/text_reader_detail.h"
+
+namespace lodestone::io {
+
+namespace {
+
+// Up to `count` numbers off the front of `rest`; returns how many there were.
+std::size_t take_numbers(std::string_view& rest, float* into, std::size_t count) {
+  std::size_t taken = 0;
+  while (taken < count) {
+    std::string_view ahead = rest;
+    float value = 0;
+    if (!parse_number(next_word(ahead), value)) break;
+    into[taken++] = value;
+    rest = ahead;
+  }
+  return taken;
+}
+
+float share(float value) { return value >= 0 ? std::min(value, 1.0F) : 0.0F; }
+
+// The file name of a map line, which may hold blanks, behind its options.
+std::string_view map_name(std::string_view rest) {
+  while (true) {
+    std::string_view ahead = trimmed(rest);
+    if (!ahead.starts_with('-')) return ahead;
+    const std::string_view option = next_word(ahead);
+    float ignored[3];
+    if (option == "-s" || option == "-o" || option == "-t") {
+      take_numbers(ahead, ignored, 3);
+    } else if (option == "-mm") {
+      take_numbers(ahead, ignored, 2);
+    } else if (option == "-bm" || option == "-boost" || option == "-texres") {
+      take_numbers(ahead, ignored, 1);
+    } else if (option == "-blendu" || option == "-blendv" || option == "-cc" || option == "-clamp" ||
+               option == "-imfchan" || option == "-type") {
+      next_word(ahead);
+    } else {
+      return trimmed(rest);  // a name that begins with '-'
+    }
+    rest = ahead;
+  }
+}
+
+class MtlParser {
+ public:
+  MtlParser(const std::filesystem::path& folder, std::vector<Material>& materials, std::vector<std::string>& warnings)
+      : folder_(folder), materials_(materials), warnings_(warnings) {}
+
+  void line(std::string_view rest) {
+    const std::string key = lower_case(next_word(rest));
+    if (key == "newmtl") {
+      finish();
+      Material material;
+      material.name = trimmed(rest);
+      materials_.push_back(std::move(material));
+      open_ = true;
+      return;
+    }
+    if (!open_) return;
+    Material& material = materials_.back();
+    float v[3] = {0, 0, 0};
+    if (key == "kd") {
+      const std::size_t n = take_numbers(rest, v, 3);
+      if (n == 1) v[1] = v[2] = v[0];
+      if (n > 0) std::transform(v, v + 3, material.base_color.begin(), share);
+    } else if (key == "d") {
+      if (take_numbers(rest, v, 1) == 1) material.base_color[3] = share(v[0]);
+    } else if (key == "tr") {
+      if (take_numbers(rest, v, 1) == 1) material.base_color[3] = share(1 - v[0]);
+    } else if (key == "pr") {
+      if (take_numbers(rest, v, 1) == 1) material.roughness = share(v[0]);
+    } else if (key == "pm") {
+      if (take_numbers(rest, v, 1) == 1) material.metallic = share(v[0]);
+    } else if (key == "map_kd") {
+      material.base_color_texture = image(map_name(rest));
+    }
+  }
+
+  void finish() {
+    if (!open_) return;
+    Material& material = materials_.back();
+    std::array<float, 4>& color = material.base_color;
+    if (material.base_color_texture && color[0] == 0 && color[1] == 0 && color[2] == 0) color = {1, 1, 1, color[3]};
+  }
+
+ private:
+  std::shared_ptr<const Image> image(std::string_view name) {
+    if (name.empty()) return nullptr;
+    const auto [at, is_new] = images_.try_emplace(std::string(name));
+    if (is_new) at->second = load_image_near(folder_, name, warnings_);
+    return at->second;
+  }
+
+  const std::filesystem::path& folder_;
+  std::vector<Material>& materials_;
+  std::vector<std::string>& warnings_;
+  std::map<std::string, std::shared_ptr<const Image>> images_;
+  bool open_ = false;
+};
+
+}  // namespace
+
+void read_mtl(std::string_view text, const std::filesystem::path& folder, std::vector<Material>& materials,
+              std::vector<std::string>& warnings) {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  MtlParser parser(folder, materials, warnings);
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    parser.line(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  parser.finish();
+}
+
+}  // namespace lodestone::io

@@ -1,0 +1,89 @@
+// The faces of an OBJ: corners to wedges, polygons to triangles.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lodestone/base/result.h"
+#include "lodestone/core/model.h"
+#include "lodestone/io/obj_words_detail.h"
+#include "lodestone/io/polygon.h"
+#include "lodestone/io/wedge_table_detail.h"
+
+namespace lodestone::io {
+
+/// What `v`, `vt` and `vn` lines gave.
+struct ObjData {
+  std::vector<Vec3d> positions;
+  std::vector<float> colors;  ///< four a vertex, or empty when no vertex has one
+  bool has_alpha = false;
+  std::vector<Vec2f> uvs;
+  std::vector<Vec3f> normals;
+
+  /// From here on all vertices have colours; those before are white.
+  void start_colors() {
+    if (colors.empty()) colors.assign(4 * positions.size(), 1.0F);
+  }
+  void clear() { *this = {}; }
+};
+
+/// How many `v`, `vt` and `vn` lines came before the present line: what negative indices count from.
+struct ObjCounts {
+  std::uint64_t positions = 0, uvs = 0, normals = 0;
+};
+
+class ObjFaces {
+ public:
+  /// `complete`: all vertices have been read. Otherwise a face that names a later one fails, and names_later_vertex()
+  /// is true: it may be a fault or not.
+  void begin(bool complete) { complete_ = complete; }
+  bool names_later_vertex() const { return names_later_; }
+  void clear() { *this = {}; }
+
+  /// Takes the corners of an `f` line. Errors: bad_format.
+  template <class Place>
+  Result<void> take(WordScanner& words, const ObjData& data, const ObjCounts& counts, std::uint32_t group,
+                    Place place) {
+    const Fault fault = take_corners(words, data, counts);
+    if (fault.what.empty()) {
+      add_polygon(data, group);
+      return {};
+    }
+    return fail(ErrorCode::bad_format, fault.what, place(), fault.remedy);
+  }
+
+  /// Moves triangles, wedges and streams into the mesh, and tells what was left out.
+  void fill(Mesh& mesh, Model& model, ObjData& data);
+
+ private:
+  struct Corner {
+    std::uint32_t position = kNone, uv = kNone, normal = kNone;
+  };
+  struct Fault {
+    std::string what, remedy;
+  };
+  // Of one face group: whether it has corners with and without a UV and a normal.
+  struct Presence {
+    bool with_uv = false, without_uv = false, with_normal = false, without_normal = false;
+  };
+
+  Fault take_corners(WordScanner& words, const ObjData& data, const ObjCounts& counts);
+  Fault resolve(std::int64_t index, std::uint64_t count, std::size_t known, const char* kind, std::uint32_t& into);
+  void add_polygon(const ObjData& data, std::uint32_t group);
+  void name_corners(const ObjData& data);
+
+  bool complete_ = false, names_later_ = false, has_wedges_ = false;
+  std::vector<Corner> corners_;       // of the present face
+  std::vector<std::uint32_t> named_;  // its wedges
+  std::vector<Vec3d> points_;
+  PolygonCutter cutter_;
+  WedgeTable table_;  // keys: uv, normal; used once a corner has one
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> face_group_;
+  std::vector<Presence> presence_;  // by group
+  std::uint64_t file_triangles_ = 0, short_faces_ = 0;
+};
+
+}  // namespace lodestone::io

@@ -1,0 +1,117 @@
+#include "lodestone/measure/distance.h"
+
+#include <gtest/gtest.h>
+
+#include "lodestone/measure/screen.h"
+#include "support/shapes.h"
+
+namespace lodestone::measure {
+namespace {
+
+Distance measured(const Mesh& a, const Mesh& b, std::uint64_t samples = 50'000, int threads = 0) {
+  const auto d = distance(make_model(a), make_model(b), {samples, 1, true}, Task::root({}, threads));
+  EXPECT_TRUE(d);
+  return d ? *d : Distance{};
+}
+
+TEST(Distance, a_mesh_to_itself_is_zero) {
+  for (const test::Shape& shape : test::small_shapes()) {
+    const Distance d = measured(shape.make(), shape.make(), 2000);
+    EXPECT_LE(d.max, 1e-7 * d.diagonal) << shape.name;
+  }
+}
+
+TEST(Distance, parallel_squares) {
+  Mesh above = test::grid(4);
+  for (Vec3f& p : above.positions) p.z = 0.25F;
+  const Distance d = measured(test::grid(7), above);
+  EXPECT_NEAR(d.max, 0.25, 1e-12);
+  EXPECT_NEAR(d.mean, 0.25, 1e-12);
+  EXPECT_NEAR(d.rms, 0.25, 1e-12);
+  EXPECT_NEAR(d.normal_degrees, 0, 1e-6);
+  EXPECT_NEAR(d.diagonal, std::sqrt(2.0), 1e-12);
+}
+
+// A simplified mesh whose vertices lie on the original reads 0 by its vertices alone: samples must see what is between.
+TEST(Distance, vertices_on_the_original_do_not_make_the_error_zero) {
+  const Mesh fine = test::sphere(32);
+  Mesh coarse = test::sphere(4);
+  const Distance d = measured(fine, coarse);
+  EXPECT_GT(d.backward.mean, 0.01);
+  EXPECT_GT(d.backward.max, 0.05);
+  EXPECT_GT(d.forward.max, 0.05);
+}
+
+// Half a unit square against the whole: the far corner is 0.5 away, which only one direction sees.
+TEST(Distance, both_directions_count) {
+  Mesh half = test::grid(4);
+  for (Vec3f& p : half.positions) p.x *= 0.5F;
+  const Distance d = measured(test::grid(4), half);
+  EXPECT_NEAR(d.forward.max, 0.5, 1e-9);
+  EXPECT_NEAR(d.backward.max, 0, 1e-7);
+  EXPECT_NEAR(d.max, 0.5, 1e-9);
+  EXPECT_NEAR(d.forward.mean, 0.125, 1e-3);
+  EXPECT_NEAR(d.mean, 0.0625, 1e-3);
+}
+
+// The peak of a roof that is cut off: few samples miss it, sharpening finds it.
+TEST(Distance, sharpening_finds_the_maximum_inside_a_large_face) {
+  const Mesh flat = test::make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}});
+  const Mesh roof = test::make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.37F, 0.61F, 0.2F}},
+                                    {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}});
+  const auto rough = distance(make_model(flat), make_model(roof), {20, 1, false});
+  const auto sharp = distance(make_model(flat), make_model(roof), {20, 1, true});
+  const auto reference = distance(make_model(flat), make_model(roof), {2'000'000, 1, true});
+  EXPECT_LT(rough->forward.max, sharp->forward.max);
+  EXPECT_NEAR(sharp->forward.max, reference->forward.max, 0.01 * reference->forward.max);
+}
+
+TEST(Distance, same_figures_for_any_thread_count) {
+  const Mesh a = test::torus(40), b = test::torus(13);
+  const Distance one = measured(a, b, 30'000, 1), two = measured(a, b, 30'000, 2), seven = measured(a, b, 30'000, 7);
+  for (const Distance* d : {&two, &seven}) {
+    EXPECT_EQ(one.max, d->max);
+    EXPECT_EQ(one.mean, d->mean);
+    EXPECT_EQ(one.rms, d->rms);
+    EXPECT_EQ(one.normal_degrees, d->normal_degrees);
+  }
+}
+
+TEST(Distance, far_from_the_origin_gives_the_same) {
+  Mesh a = test::torus(30), b = test::torus(9);
+  const Distance near = measured(a, b, 20'000);
+  a.offset = b.offset = {1e6, -1e6, 1e6};
+  const Distance far = measured(a, b, 20'000);
+  EXPECT_NEAR(far.mean, near.mean, 1e-8);
+  EXPECT_NEAR(far.max, near.max, 1e-6);
+}
+
+TEST(Distance, degenerate_and_distant_meshes) {
+  const Mesh point = test::make_mesh({{0, 0, 0}}, {{0, 0, 0}});
+  Mesh moved = test::cube();
+  for (Vec3f& p : moved.positions) p.x += 1e6F;
+  EXPECT_NEAR(measured(point, test::cube(), 100).max, std::sqrt(3.0), 1e-9);
+  EXPECT_NEAR(measured(test::cube(), moved, 100).max, 1e6, 1);
+  EXPECT_FALSE(distance(make_model(test::cube()), Model{}));
+}
+
+TEST(Distance, a_cancelled_measurement_is_an_error) {
+  const Task task = Task::root({});
+  task.cancel();
+  const auto d = distance(make_model(test::cube()), make_model(test::cube()), {}, task);
+  ASSERT_FALSE(d);
+  EXPECT_EQ(d.error().code, ErrorCode::cancelled);
+}
+
+TEST(Screen, pixels_and_errors_are_inverse) {
+  const View view{1080, 45, 16.0 / 9};
+  EXPECT_NEAR(error_to_pixels(pixels_to_error(1, 12.5, view), 12.5, view), 1, 1e-12);
+  EXPECT_NEAR(error_to_pixels(0.01, switch_distance(0.01, 1, view), view), 1, 1e-12);
+  // A metre seen from a metre at 90 degrees covers half the lines.
+  EXPECT_NEAR(error_to_pixels(1, 1, {1000, 90, 1}), 500, 1e-9);
+  EXPECT_LE(screen_coverage(1, 0, view), 1);
+  EXPECT_GT(screen_coverage(1, 1, view), screen_coverage(1, 2, view));
+}
+
+}  // namespace
+}  // namespace lodestone::measure

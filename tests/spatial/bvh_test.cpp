@@ -1,0 +1,70 @@
+#include "lodestone/spatial/bvh.h"
+
+#include <gtest/gtest.h>
+
+#include "lodestone/base/random.h"
+#include "lodestone/math/triangle.h"
+#include "support/shapes.h"
+
+namespace lodestone::spatial {
+namespace {
+
+double brute_distance_sq(const Surface& surface, Vec3d p) {
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto [a, b, c] = surface.corners(t);
+    best = std::min(best, closest_point(p, a, b, c).distance_sq);
+  }
+  return best;
+}
+
+void expect_exact(const Mesh& mesh, double spread) {
+  const auto surface = flatten(make_model(mesh));
+  ASSERT_TRUE(surface);
+  const Bvh tree(*surface);
+  const Vec3d center = surface->bounds.center();
+  const double size = surface->bounds.diagonal() * spread;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const Vec3d p = center + Vec3d{random_unit(7, 3 * i) - 0.5, random_unit(7, 3 * i + 1) - 0.5,
+                                   random_unit(7, 3 * i + 2) - 0.5} * size;
+    const double brute = brute_distance_sq(*surface, p);
+    EXPECT_EQ(tree.closest(p).distance_sq, brute);
+    const auto hint = static_cast<std::uint32_t>(random_bits(8, i) % surface->triangles.size());
+    EXPECT_EQ(tree.closest(p, hint).distance_sq, brute);
+  }
+}
+
+TEST(Bvh, answers_as_all_triangles_would) {
+  for (const test::Shape& shape : test::small_shapes()) {
+    SCOPED_TRACE(shape.name);
+    expect_exact(shape.make(), 1.5);
+    expect_exact(shape.make(), 1000);
+  }
+}
+
+TEST(Bvh, sizes_do_not_matter) {
+  for (const float scale : {1e-30F, 1e-6F, 1e6F, 1e30F}) {
+    Mesh mesh = test::torus(10);
+    for (Vec3f& p : mesh.positions) p *= scale;
+    SCOPED_TRACE(scale);
+    expect_exact(mesh, 1.5);
+  }
+}
+
+TEST(Surface, instances_and_mirrors) {
+  Model model = make_model(test::cube());
+  model.instances.push_back({0, Mat4d::translation({5, 0, 0}) * Mat4d::scale({-1, 1, 1}), "mirrored"});
+  const auto surface = flatten(model);
+  ASSERT_TRUE(surface);
+  EXPECT_EQ(surface->triangles.size(), 24U);
+  double volume = 0;
+  for (std::size_t t = 0; t < 24; ++t) {
+    const auto [a, b, c] = surface->corners(t);
+    volume += dot(a, cross(b, c)) / 6;
+  }
+  EXPECT_NEAR(volume, 2, 1e-12);  // both outward
+  EXPECT_FALSE(flatten(Model{}));
+}
+
+}  // namespace
+}  // namespace lodestone::spatial

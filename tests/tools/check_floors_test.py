@@ -1,0 +1,131 @@
+"""tools/check_floors on scratch trees: each kind of violation is caught with file, line, include and rule."""
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[2]
+
+CLEAN = {
+    "lodestone/base/result.h": "#pragma once\n#include <string>\n#include <tl/expected.hpp>\n",
+    "lodestone/base/check.h": "#pragma once\n",
+    "lodestone/math/vec.h": '#pragma once\n#include "lodestone/base/result.h"\n',
+    "lodestone/core/mesh.h": '#pragma once\n#include "lodestone/math/vec.h"\n',
+    "lodestone/core/mesh.cpp": '#include "lodestone/core/mesh.h"\n#include <fmt/format.h>\n',
+    "lodestone/runtime/choice.h": '#pragma once\n#include "lodestone/base/check.h"\n#include "lodestone/math/vec.h"\n',
+    "lodestone/spatial/bvh.h": '#pragma once\n#include "lodestone/core/mesh.h"\n',
+    "lodestone/io/gltf_detail.h": "#pragma once\n#include <nlohmann/json_fwd.hpp>\n",
+    "lodestone/io/gltf.cpp": '#include "lodestone/io/gltf_detail.h"\n#include <nlohmann/json.hpp>\n',
+    "lodestone/simplify/edge_collapse.h": '#pragma once\n#include "lodestone/spatial/bvh.h"\n',
+    "app/main.cpp": '#include <CLI/CLI.hpp>\n#include "lodestone/simplify/edge_collapse.h"\n',
+}
+
+
+class CheckFloors(unittest.TestCase):
+    def setUp(self):
+        self.root = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.root)
+        (self.root / "tools").mkdir()
+        shutil.copy(TOP / "tools/floors.txt", self.root / "tools")
+        for name, text in CLEAN.items():
+            self.write(name, text)
+
+    def write(self, name, text):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+    def run_tool(self):
+        done = subprocess.run([TOP / "tools/check_floors", self.root], capture_output=True, text=True)
+        return done.returncode, done.stdout + done.stderr
+
+    def assert_caught(self, name, text, *words):
+        self.write(name, text)
+        status, out = self.run_tool()
+        self.assertEqual(status, 1, out)
+        lines = out.splitlines()
+        self.assertEqual(len(lines), 1, out)
+        for word in words:
+            self.assertIn(word, lines[0])
+
+    def test_clean_tree_passes(self):
+        status, out = self.run_tool()
+        self.assertEqual(status, 0, out)
+
+    def test_room_above(self):
+        self.assert_caught("lodestone/core/weld.cpp", '\n\n#include "lodestone/spatial/bvh.h"\n',
+                           "lodestone/core/weld.cpp:3", "lodestone/spatial/bvh.h", "core (floor 3) may include 1-2")
+
+    def test_room_beside(self):
+        self.assert_caught("lodestone/io/ply.cpp", '#include "lodestone/spatial/bvh.h"\n',
+                           "lodestone/io/ply.cpp:1", "io (floor 4) may include 1-3")
+
+    def test_room_two_floors_down_only_by_name(self):
+        self.assert_caught("lodestone/simplify/a.cpp", '#include "lodestone/io/gltf.h"\n', "there is no such file")
+        self.write("lodestone/io/gltf.h", "#pragma once\n")
+        self.assert_caught("lodestone/simplify/a.cpp", '#include "lodestone/io/gltf.h"\n',
+                           "simplify (floor 5) may include 1-3, spatial")
+
+    def test_runtime_sees_one_header_of_base(self):
+        self.assert_caught("lodestone/runtime/choice.h", '#pragma once\n#include "lodestone/base/result.h"\n',
+                           "runtime (floor 3) may include math, base/check.h")
+
+    def test_library_knows_no_command(self):
+        self.write("app/table.h", "#pragma once\n")
+        self.assert_caught("lodestone/io/ply.cpp", '#include "app/table.h"\n', "io (floor 4) may include")
+
+    def test_library_in_the_wrong_file(self):
+        for name, header, word in [
+            ("lodestone/spatial/bvh.cpp", "oneapi/tbb/parallel_for.h", "base/parallel.cpp"),
+            ("lodestone/core/a.cpp", "nlohmann/json.hpp", "io/gltf*"),
+            ("lodestone/io/ply.cpp", "nlohmann/json.hpp", "io/gltf*"),
+            ("lodestone/io/read.cpp", "assimp/scene.h", "io/assimp.cpp"),
+            ("lodestone/io/gltf_meshopt.cpp", "meshoptimizer.h", "io/meshopt.cpp"),
+            ("lodestone/core/mesh.cpp", "tl/expected.hpp", "base/result.h"),
+            ("lodestone/core/mesh.cpp", "fast_float/fast_float.h", "io/*"),
+            ("lodestone/spatial/bvh.cpp", "Eigen/Dense", "math/*.cpp"),
+            ("lodestone/simplify/a.cpp", "CLI/CLI.hpp", "app/*"),
+        ]:
+            with self.subTest(header=header):
+                self.assert_caught(name, f"#include <{header}>\n", f"{name}:1", header, word, "only")
+                (self.root / name).unlink()
+
+    def test_library_in_a_public_header(self):
+        self.assert_caught("lodestone/core/text.h", "#pragma once\n#include <fmt/format.h>\n", "*.cpp only")
+        (self.root / "lodestone/core/text.h").unlink()
+        self.assert_caught("lodestone/math/fit.h", "#pragma once\n#include <Eigen/Dense>\n", "math/*.cpp")
+
+    def test_unknown_library(self):
+        self.assert_caught("lodestone/core/a.cpp", "#include <boost/any.hpp>\n", "boost/any.hpp", "not in the table")
+
+    def test_private_header_of_another_room(self):
+        self.assert_caught("app/inspect.cpp", '#include "lodestone/io/gltf_detail.h"\n', "private to its room, io")
+
+    def test_public_header_that_needs_a_private_one(self):
+        self.assert_caught("lodestone/io/gltf.h", '#pragma once\n#include "lodestone/io/gltf_detail.h"\n',
+                           "lodestone/io/gltf.h:2", "not installed")
+
+    def test_relative_include(self):
+        self.assert_caught("lodestone/core/a.cpp", '#include "mesh.h"\n', 'included as "lodestone/<room>/<file>.h"')
+
+    def test_circle(self):
+        self.write("lodestone/core/a.h", '#pragma once\n#include "lodestone/core/b.h"\n')
+        self.assert_caught("lodestone/core/b.h", '#pragma once\n#include "lodestone/core/a.h"\n', "circle",
+                           "lodestone/core/a.h -> lodestone/core/b.h -> lodestone/core/a.h")
+
+    def test_header_without_pragma_once(self):
+        self.assert_caught("lodestone/core/a.h", "#ifndef A\n#define A\n#endif\n", "lodestone/core/a.h", "#pragma once")
+
+    def test_unknown_room(self):
+        self.assert_caught("lodestone/misc/a.cpp", "#include <string>\n", "lodestone/misc/a.cpp", "no room")
+
+    def test_nothing_to_check_is_an_error(self):
+        shutil.rmtree(self.root / "lodestone")
+        shutil.rmtree(self.root / "app")
+        status, out = self.run_tool()
+        self.assertEqual(status, 1, out)
+
+
+if __name__ == "__main__":
+    unittest.main()
