@@ -50,7 +50,8 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, const 
   const Result<chain::LadderOptions> options = ladder_options(plan, *model, notes);
   if (!options) return fail(options.error());
   for (const std::string& note : notes) console.note(fmt::format("{}: {}", report.input, note));
-  Result<chain::LadderResult> result = chain::build_ladder(std::move(*model), *options, task.part(0.8, "making levels"));
+  Result<chain::LadderResult> result =
+      chain::build_ladder(std::move(*model), *options, task.part(0.8, "making levels"));
   if (!result) return fail(result.error());
   report.levels_seconds = result->simplify_seconds;
   report.measure_seconds = result->measure_seconds;
@@ -58,7 +59,8 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, const 
 
   watch.lap();
   const io::WriteOptions write{plan.compression, chain::screen_coverages(result->ladder, plan.view)};
-  const Result<io::WriteReport> written = io::write_ladder(result->ladder, job.output, write, task.part(0.1, "writing"));
+  const Result<io::WriteReport> written =
+      io::write_ladder(result->ladder, job.output, write, task.part(0.1, "writing"));
   if (!written) return fail(written.error());
   report.write_seconds = watch.lap();
   add_levels(report, result->ladder, *written, plan.view);
@@ -77,7 +79,8 @@ Result<BuildReport> build_within_memory(const BuildJob& job, const BuildPlan& pl
   try {
     return build_one(job, plan, console, task);
   } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::out_of_memory, "out of memory", job.input.string(), "use a machine with more, or a smaller model");
+    return fail(ErrorCode::out_of_memory, "out of memory", job.input.string(),
+                "use a machine with more, or a smaller model");
   }
 }
 
@@ -90,19 +93,23 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
   table.add_column("1 px from" + unit);
   for (const char* title : {"bytes", "seconds"}) table.add_column(title);
   for (const LevelReport& level : report.levels) {
-    const double share = static_cast<double>(level.triangles) / static_cast<double>(std::max<std::size_t>(1, report.triangles));
+    const double share =
+        static_cast<double>(level.triangles) / static_cast<double>(std::max<std::size_t>(1, report.triangles));
     table.add_row({fmt::format("{}", level.level), with_separators(level.triangles), percent(share),
                    short_number(level.error.error), percent(level.error.relative(level.error.error)),
                    short_number(level.switch_distance), human_bytes(level.bytes), seconds_text(level.seconds)});
   }
-  std::string out = fmt::format("{} -> {}\n{}", printable(report.input), printable(report.levels.back().file), table.text());
+  std::string out =
+      fmt::format("{} -> {}\n{}", printable(report.input), printable(report.levels.back().file), table.text());
   if (report.levels.front().file != report.levels.back().file) {
     out = fmt::format("{} -> {} ... {}\n{}", printable(report.input), printable(report.levels.front().file),
                       printable(report.levels.back().file), table.text());
   }
-  return out + fmt::format("{} in all, {} s; 1 px from: the distance from which the error is at most a pixel ({} lines, {} degrees)\n",
-                           human_bytes(report.total_bytes), seconds_text(report.total_seconds), plan.view.height_px,
-                           plan.view.fov_degrees);
+  return out + fmt::format(
+                   "{} in all, {} s; 1 px from: the distance from which the error is at most a pixel ({} lines, {} "
+                   "degrees)\n",
+                   human_bytes(report.total_bytes), seconds_text(report.total_seconds), plan.view.height_px,
+                   plan.view.fov_degrees);
 }
 
 void tell_shortfalls(const BuildReport& report, const Console& console) {

@@ -66,7 +66,8 @@ Result<BuildPlan> build_plan(const Arguments& arguments) {
   return plan;
 }
 
-Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& model, std::vector<std::string>& notes) {
+Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& model,
+                                            std::vector<std::string>& notes) {
   chain::LadderOptions options;
   if (plan.levels > 0) options.levels = plan.levels;
   options.ratios = plan.ratios;
@@ -76,8 +77,8 @@ Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& 
   if (!plan.ratios.empty()) {
     std::vector<std::string> shares;
     for (const double ratio : plan.ratios) shares.push_back(percent(ratio));
-    notes.push_back(fmt::format("keeping {} of {} triangles", fmt::join(shares, ", "),
-                                with_separators(drawn_triangles(model))));
+    notes.push_back(
+        fmt::format("keeping {} of {} triangles", fmt::join(shares, ", "), with_separators(drawn_triangles(model))));
   }
   const double diagonal = bounds_of(model).diagonal();
   const Result<std::vector<double>> errors = to_model_units(plan.errors, model, diagonal);
@@ -96,7 +97,7 @@ Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& 
 
 namespace {
 
-bool is_directory(const fs::path& path) {
+bool is_folder(const fs::path& path) {
   std::error_code ignored;
   return fs::is_directory(path, ignored);
 }
@@ -112,7 +113,7 @@ std::string replaced(std::string text, std::string_view mark, const std::string&
 Result<std::vector<fs::path>> list_inputs(const Arguments& arguments) {
   std::vector<fs::path> inputs;
   for (const std::string& word : arguments.inputs) {
-    if (!is_directory(word)) {
+    if (!is_folder(word)) {
       inputs.emplace_back(word);
       continue;
     }
@@ -150,7 +151,7 @@ Result<void> check_distinct(const std::vector<BuildJob>& jobs) {
 // Before a folder exists only the names can be checked.
 Result<void> check_outputs(const BuildJobs& all, const std::vector<fs::path>& inputs) {
   if (const Result<void> distinct = check_distinct(all.jobs); !distinct) return distinct;
-  const bool folder_exists = all.folder.empty() || is_directory(all.folder);
+  const bool folder_exists = all.folder.empty() || is_folder(all.folder);
   for (const BuildJob& job : all.jobs) {
     const Result<void> checked = check_output(job.output, inputs);
     if (!checked && (folder_exists || checked.error().code == ErrorCode::bad_argument)) return checked;
@@ -163,9 +164,9 @@ Result<void> check_outputs(const BuildJobs& all, const std::vector<fs::path>& in
 Result<BuildJobs> build_jobs(const Arguments& arguments) {
   if (!arguments.has("--output")) return missing_output("build", arguments.inputs.front());
   const std::string output = arguments.text("--output");
-  const bool into_folder = output.ends_with('/') || is_directory(output);
+  const bool into_folder = output.ends_with('/') || is_folder(output);
   BuildJobs all;
-  all.batch = arguments.inputs.size() > 1 || is_directory(arguments.inputs.front());
+  all.batch = arguments.inputs.size() > 1 || is_folder(arguments.inputs.front());
   if (all.batch && !into_folder && output.find("{name}") == std::string::npos) {
     return fail(ErrorCode::bad_argument, fmt::format("-o {} is one file, but there are several inputs", output), {},
                 "name a folder with a slash at its end, such as -o lods/");

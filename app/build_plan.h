@@ -40,8 +40,8 @@ struct BuildJobs {
   std::filesystem::path folder;  ///< to be made if missing; empty = none
 };
 
-/// Lists directories and names the outputs. Errors: bad_argument (no output, an output that is an input, two inputs for one
-/// output), cannot_read, cannot_write, empty.
+/// Lists directories and names the outputs. Errors: bad_argument (no output, an output that is an input, two inputs for
+/// one output), cannot_read, cannot_write, empty.
 Result<BuildJobs> build_jobs(const Arguments& arguments);
 
 }  // namespace lodestone::app

@@ -47,16 +47,17 @@ void add_option(CLI::App& parser, Slot& slot) {
 
 Error unknown_word(const VerbSpec& verb, const std::string& word) {
   if (word.empty() || word[0] != '-' || word == "-") {
-    return usage_error(verb, verb.inputs.most == 0
-                                 ? fmt::format("{} takes no input, but got '{}'", verb.name, word)
-                                 : fmt::format("{} takes {}, '{}' is one too many", verb.name, verb.inputs.usage, word));
+    return usage_error(verb, verb.inputs.most == 0 ? fmt::format("{} takes no input, but got '{}'", verb.name, word)
+                                                   : fmt::format("{} takes {}, '{}' is one too many", verb.name,
+                                                                 verb.inputs.usage, word));
   }
   std::vector<std::string> names;
   for (const OptionGroup& group : verb.groups) {
     for (const OptionSpec& option : group.options) names.push_back(option.name);
   }
   const std::string name = word.substr(0, word.find('='));
-  return usage_error(verb, fmt::format("{} has no option '{}', did you mean {}?", verb.name, name, nearest(name, names)));
+  return usage_error(verb,
+                     fmt::format("{} has no option '{}', did you mean {}?", verb.name, name, nearest(name, names)));
 }
 
 Result<void> check_choice(const VerbSpec& verb, const std::string& what, const std::string& text,

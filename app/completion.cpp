@@ -40,16 +40,17 @@ std::string bash_verb(const VerbSpec& verb) {
   for (const OptionGroup& group : verb.groups) {
     for (const OptionSpec& option : group.options) {
       if (option.is_switch()) continue;
-      const std::string action = !option.choices.empty()                   ? bash_words(option.choices)
+      const std::string action = !option.choices.empty()                 ? bash_words(option.choices)
                                  : option.completion == Completion::file ? "COMPREPLY=($(compgen -f -- \"$current\"))"
                                                                          : "COMPREPLY=()";
       out += fmt::format("        {}) {}; return ;;\n", names_pattern(option), action);
     }
   }
-  const std::string inputs = verb.inputs.choices.empty() ? "COMPREPLY=($(compgen -f -- \"$current\"))"
-                                                         : bash_words(verb.inputs.choices);
-  out += fmt::format("      esac\n      if [[ \"$current\" == -* ]]; then\n        {}\n      else\n        {}\n      fi ;;\n",
-                     bash_words(option_names(verb)), inputs);
+  const std::string inputs =
+      verb.inputs.choices.empty() ? "COMPREPLY=($(compgen -f -- \"$current\"))" : bash_words(verb.inputs.choices);
+  out += fmt::format(
+      "      esac\n      if [[ \"$current\" == -* ]]; then\n        {}\n      else\n        {}\n      fi ;;\n",
+      bash_words(option_names(verb)), inputs);
   return out;
 }
 
@@ -98,16 +99,19 @@ std::string zsh_option(const OptionSpec& option) {
 }
 
 std::string zsh_script() {
-  std::string out = "#compdef lod\n# zsh completion for lod; made by 'lod completion zsh'\n_lod() {\n  local -a verbs\n  verbs=(\n";
+  std::string out =
+      "#compdef lod\n# zsh completion for lod; made by 'lod completion zsh'\n_lod() {\n  local -a verbs\n  verbs=(\n";
   for (const VerbSpec& verb : verbs()) out += fmt::format("    '{}:{}'\n", verb.name, zsh_text(verb.summary));
-  out += "  )\n  if ((CURRENT == 2)); then\n    _describe 'verb' verbs\n    return\n  fi\n"
-         "  local verb=$words[2]\n  shift words\n  ((CURRENT--))\n  case $verb in\n";
+  out +=
+      "  )\n  if ((CURRENT == 2)); then\n    _describe 'verb' verbs\n    return\n  fi\n"
+      "  local verb=$words[2]\n  shift words\n  ((CURRENT--))\n  case $verb in\n";
   for (const VerbSpec& verb : verbs()) {
     out += fmt::format("    {})\n      _arguments \\\n", verb.name);
     for (const OptionGroup& group : verb.groups) {
       for (const OptionSpec& option : group.options) out += zsh_option(option);
     }
-    const std::string inputs = verb.inputs.choices.empty() ? "_files" : fmt::format("({})", fmt::join(verb.inputs.choices, " "));
+    const std::string inputs =
+        verb.inputs.choices.empty() ? "_files" : fmt::format("({})", fmt::join(verb.inputs.choices, " "));
     out += fmt::format("        '*:{}:{}' ;;\n", zsh_text(verb.inputs.usage), inputs);
   }
   return out + "  esac\n}\nif [ \"$funcstack[1]\" = \"_lod\" ]; then\n  _lod \"$@\"\nelse\n  compdef _lod lod\nfi\n";
@@ -127,7 +131,8 @@ std::string fish_text(std::string_view text) {
 std::string fish_script() {
   std::string out = "# fish completion for lod; made by 'lod completion fish'\n";
   for (const VerbSpec& verb : verbs()) {
-    out += fmt::format("complete -c lod -n __fish_use_subcommand -f -a {} -d '{}'\n", verb.name, fish_text(verb.summary));
+    out +=
+        fmt::format("complete -c lod -n __fish_use_subcommand -f -a {} -d '{}'\n", verb.name, fish_text(verb.summary));
   }
   out += "complete -c lod -n __fish_use_subcommand -l version -d 'print the version'\n";
   for (const VerbSpec& verb : verbs()) {

@@ -21,9 +21,9 @@ class Console {
   /// The file at work, for the progress bar.
   void set_title(std::string title) { progress_.set_title(std::move(title)); }
 
-  void note(std::string_view text) const;    ///< unless --quiet
-  void detail(std::string_view text) const;  ///< with --verbose
-  void error(const Error& error) const;      ///< always
+  void note(std::string_view text) const;       ///< unless --quiet
+  void detail(std::string_view text) const;     ///< with --verbose
+  void error(const Error& error) const;         ///< always
   void shortfall(std::string_view text) const;  ///< always: why a target was not reached
   /// To standard output. Errors are found by finish().
   void result(std::string_view text) const;

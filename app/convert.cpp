@@ -36,8 +36,8 @@ Result<ExitCode> run_convert(const Arguments& arguments, Console& console) {
   report.read_seconds = watch.lap();
   report.triangles = drawn_triangles(*model);
   report.warnings = model->warnings;
-  const Result<io::WriteReport> written = io::write_model(*model, *output, io::WriteOptions{compression_of(arguments), {}},
-                                                          console.task().part(0.5, "writing"));
+  const Result<io::WriteReport> written = io::write_model(
+      *model, *output, io::WriteOptions{compression_of(arguments), {}}, console.task().part(0.5, "writing"));
   if (!written) return fail(written.error());
   report.write_seconds = watch.lap();
   report.bytes = written->total_bytes;
@@ -46,10 +46,9 @@ Result<ExitCode> run_convert(const Arguments& arguments, Console& console) {
     console.note(fmt::format("{}: {}", *output, warning));
     report.warnings.push_back(warning);
   }
-  console.result(arguments.has("--json")
-                     ? to_json(report)
-                     : fmt::format("{}: {} triangles, {}\n", printable(*output), with_separators(report.triangles),
-                                   human_bytes(report.bytes)));
+  console.result(arguments.has("--json") ? to_json(report)
+                                         : fmt::format("{}: {} triangles, {}\n", printable(*output),
+                                                       with_separators(report.triangles), human_bytes(report.bytes)));
   return ExitCode::done;
 }
 

@@ -1,5 +1,5 @@
-// Formats that other people's libraries read are read in a child process with limits on memory and time, so that a crash
-// or a hang there is an ordinary error here.
+// Formats that other people's libraries read are read in a child process with limits on memory and time, so that a
+// crash or a hang there is an ordinary error here.
 #pragma once
 
 #include <filesystem>

@@ -46,7 +46,8 @@ std::string usage_line(const VerbSpec& verb) {
 }
 
 std::string overview_help() {
-  std::string out = "lod makes levels of detail with measured errors.\n\nUsage: lod VERB INPUT... [-o OUTPUT] [options]\n\nVerbs:\n";
+  std::string out =
+      "lod makes levels of detail with measured errors.\n\nUsage: lod VERB INPUT... [-o OUTPUT] [options]\n\nVerbs:\n";
   for (const VerbSpec& verb : verbs()) {
     out += fmt::format("  {:<12}{}\n", verb.name, wrapped(verb.summary, kWidth, 14));
   }

@@ -15,32 +15,52 @@ namespace {
 
 const char* name_of(ComponentType type) {
   switch (type) {
-    case ComponentType::int8: return "int8";
-    case ComponentType::uint8: return "uint8";
-    case ComponentType::int16: return "int16";
-    case ComponentType::uint16: return "uint16";
-    case ComponentType::int32: return "int32";
-    case ComponentType::uint32: return "uint32";
-    case ComponentType::float32: return "float32";
-    case ComponentType::float64: return "float64";
+    case ComponentType::int8:
+      return "int8";
+    case ComponentType::uint8:
+      return "uint8";
+    case ComponentType::int16:
+      return "int16";
+    case ComponentType::uint16:
+      return "uint16";
+    case ComponentType::int32:
+      return "int32";
+    case ComponentType::uint32:
+      return "uint32";
+    case ComponentType::float32:
+      return "float32";
+    case ComponentType::float64:
+      return "float64";
   }
   return "";
 }
 
 const char* name_of(Semantic semantic) {
   switch (semantic) {
-    case Semantic::normal: return "normal";
-    case Semantic::tangent: return "tangent";
-    case Semantic::uv: return "uv";
-    case Semantic::color: return "color";
-    case Semantic::joints: return "joints";
-    case Semantic::weights: return "weights";
-    case Semantic::morph_position: return "morph_position";
-    case Semantic::morph_normal: return "morph_normal";
-    case Semantic::morph_tangent: return "morph_tangent";
-    case Semantic::morph_other: return "morph_other";
-    case Semantic::categorical: return "categorical";
-    case Semantic::generic: return "generic";
+    case Semantic::normal:
+      return "normal";
+    case Semantic::tangent:
+      return "tangent";
+    case Semantic::uv:
+      return "uv";
+    case Semantic::color:
+      return "color";
+    case Semantic::joints:
+      return "joints";
+    case Semantic::weights:
+      return "weights";
+    case Semantic::morph_position:
+      return "morph_position";
+    case Semantic::morph_normal:
+      return "morph_normal";
+    case Semantic::morph_tangent:
+      return "morph_tangent";
+    case Semantic::morph_other:
+      return "morph_other";
+    case Semantic::categorical:
+      return "categorical";
+    case Semantic::generic:
+      return "generic";
   }
   return "";
 }
@@ -74,16 +94,19 @@ void add_measures(InfoReport& report, const Mesh& mesh, const Mat4d& transform, 
     volume += dot(a, cross(b, c)) / 6;
   }
   report.area += area;
-  report.volume += transform.determinant3() < 0 ? -volume : volume;  // a mirror turns the faces, a renderer turns them back
+  report.volume +=
+      transform.determinant3() < 0 ? -volume : volume;  // a mirror turns the faces, a renderer turns them back
 }
 
 void add_attributes(InfoReport& report, const Mesh& mesh) {
   for (const AttributeStream& stream : mesh.attributes) {
-    AttributeReport one{stream.name, name_of(stream.semantic), name_of(stream.type), stream.components, stream.normalized};
-    const bool known = std::any_of(report.attributes.begin(), report.attributes.end(), [&](const AttributeReport& other) {
-      return other.name == one.name && other.semantic == one.semantic && other.type == one.type &&
-             other.components == one.components && other.normalized == one.normalized;
-    });
+    AttributeReport one{stream.name, name_of(stream.semantic), name_of(stream.type), stream.components,
+                        stream.normalized};
+    const bool known =
+        std::any_of(report.attributes.begin(), report.attributes.end(), [&](const AttributeReport& other) {
+          return other.name == one.name && other.semantic == one.semantic && other.type == one.type &&
+                 other.components == one.components && other.normalized == one.normalized;
+        });
     if (!known) report.attributes.push_back(std::move(one));
   }
 }
@@ -119,7 +142,8 @@ std::string triple(const std::array<double, 3>& v) {
 }
 
 std::string attribute_text(const AttributeReport& a) {
-  return fmt::format("{} ({}, {} x {}{})", printable(a.name), a.semantic, a.components, a.type, a.normalized ? ", normalized" : "");
+  return fmt::format("{} ({}, {} x {}{})", printable(a.name), a.semantic, a.components, a.type,
+                     a.normalized ? ", normalized" : "");
 }
 
 std::string table_of(const InfoReport& report) {
@@ -130,8 +154,10 @@ std::string table_of(const InfoReport& report) {
   table.add_column("", Table::Align::left);
   const auto row = [&](const char* name, std::string value) { table.add_row({name, std::move(value)}); };
   row("file", printable(report.path));
-  row("triangles", fmt::format("{} (in the file {})", with_separators(t.triangles), with_separators(report.file_triangles)));
-  row("vertices", fmt::format("{} (in the file {})", with_separators(t.vertices), with_separators(report.file_vertices)));
+  row("triangles",
+      fmt::format("{} (in the file {})", with_separators(t.triangles), with_separators(report.file_triangles)));
+  row("vertices",
+      fmt::format("{} (in the file {})", with_separators(t.vertices), with_separators(report.file_vertices)));
   row("wedges", with_separators(t.wedges));
   row("meshes", fmt::format("{}, drawn {} times", with_separators(report.meshes), with_separators(report.instances)));
   row("levels", with_separators(report.levels));
@@ -149,7 +175,8 @@ std::string table_of(const InfoReport& report) {
   row("area", short_number(report.area) + (unit.empty() ? "" : unit + "^2"));
   row("volume", short_number(report.volume) + (unit.empty() ? "" : unit + "^3") + (t.closed ? "" : " (not closed)"));
   for (const AttributeReport& attribute : report.attributes) row("attribute", attribute_text(attribute));
-  for (const std::string& material : report.materials) row("material", material.empty() ? "(no name)" : printable(material));
+  for (const std::string& material : report.materials)
+    row("material", material.empty() ? "(no name)" : printable(material));
   return table.text();
 }
 

@@ -35,12 +35,16 @@ int print(const std::string& text) {
 
 Error unknown_verb(const std::string& word) {
   if (word[0] == '-') {
-    return Error{ErrorCode::bad_argument, fmt::format("'{}' stands before a verb", word), {},
+    return Error{ErrorCode::bad_argument,
+                 fmt::format("'{}' stands before a verb", word),
+                 {},
                  "options go after the verb; see 'lod help'"};
   }
   std::vector<std::string> names;
   for (const VerbSpec& verb : verbs()) names.push_back(verb.name);
-  return Error{ErrorCode::bad_argument, fmt::format("no verb '{}', did you mean {}?", word, nearest(word, names)), {},
+  return Error{ErrorCode::bad_argument,
+               fmt::format("no verb '{}', did you mean {}?", word, nearest(word, names)),
+               {},
                "see 'lod help'"};
 }
 
@@ -49,7 +53,8 @@ int run_verb(const VerbSpec& verb, const Arguments& arguments) {
   if (!threads) return tell(threads.error());
   constexpr std::uint64_t kMostThreads = 1024;
   if (*threads > kMostThreads) {
-    return tell(Error{ErrorCode::bad_argument, fmt::format("--threads is {}, the limit is {}", *threads, kMostThreads), {}, {}});
+    return tell(Error{
+        ErrorCode::bad_argument, fmt::format("--threads is {}, the limit is {}", *threads, kMostThreads), {}, {}});
   }
   const int thread_count = static_cast<int>(*threads);
   const ThreadLimit limit(thread_count);
@@ -95,7 +100,8 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     std::fputs("lod: out of memory; use a smaller input or a machine with more\n", stderr);
   } catch (const std::exception& error) {
-    lodestone::app::tell(Error{ErrorCode::unsupported, error.what(), "internal error", "please report it with the command line"});
+    lodestone::app::tell(
+        Error{ErrorCode::unsupported, error.what(), "internal error", "please report it with the command line"});
   }
   return static_cast<int>(lodestone::app::ExitCode::failed);
 }

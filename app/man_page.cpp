@@ -22,9 +22,11 @@ std::string roff(std::string_view text) {
 }
 
 std::string verb_section(const VerbSpec& verb) {
-  std::string out = fmt::format(".SS {}\n{}\n.PP\n.B {}\n", roff(verb.name), roff(verb.summary), roff(usage_line(verb)));
+  std::string out =
+      fmt::format(".SS {}\n{}\n.PP\n.B {}\n", roff(verb.name), roff(verb.summary), roff(usage_line(verb)));
   if (!verb.inputs.choices.empty()) {
-    out += fmt::format(".PP\n{}: {}\n", roff(verb.inputs.usage), roff(fmt::format("{}", fmt::join(verb.inputs.choices, ", "))));
+    out += fmt::format(".PP\n{}: {}\n", roff(verb.inputs.usage),
+                       roff(fmt::format("{}", fmt::join(verb.inputs.choices, ", "))));
   }
   if (!verb.notes.empty()) out += fmt::format(".PP\n{}\n", roff(verb.notes));
   for (const OptionGroup& group : verb.groups) {
@@ -48,9 +50,10 @@ std::string man_page() {
   out += ".SH NAME\nlod \\- levels of detail with measured errors\n";
   out += ".SH SYNOPSIS\n";
   for (const VerbSpec& verb : verbs()) out += fmt::format(".B {}\n.br\n", roff(usage_line(verb)));
-  out += ".SH DESCRIPTION\n"
-         "A model goes in; a ladder of levels comes out, each with an error that was measured against the original. "
-         "Results go to standard output, everything else to standard error. Outputs appear whole or not at all.\n";
+  out +=
+      ".SH DESCRIPTION\n"
+      "A model goes in; a ladder of levels comes out, each with an error that was measured against the original. "
+      "Results go to standard output, everything else to standard error. Outputs appear whole or not at all.\n";
   out += ".SH OPTIONS OF EVERY VERB\n";
   const OptionGroup& general = verbs().front().groups.back();
   for (const OptionSpec& option : general.options) {

@@ -39,22 +39,41 @@ OptionSpec json_option() {
 OptionGroup ladder_target_group() {
   const std::string levels = fmt::format("{}", chain::LadderOptions{}.levels);
   return {"Levels (one of these)",
-          {{"--levels", "", "N", levels, "levels", "N levels with the original as level 0, each with half the triangles of the one before",
-            {}, Completion::none},
+          {{"--levels",
+            "",
+            "N",
+            levels,
+            "levels",
+            "N levels with the original as level 0, each with half the triangles of the one before",
+            {},
+            Completion::none},
            ratio_option("R,...", "one level for each share"),
            {"--triangles", "", "N,...", "", "triangles", "one level for each count", {}, Completion::none},
            error_option("E,...", "one level for each error: the coarsest mesh whose measured error is within it"),
-           {"--distances", "", "D,...", "", "length: model units, or 5m",
-            "one level for each distance: the coarsest that is good for --pixels from there", {}, Completion::none},
+           {"--distances",
+            "",
+            "D,...",
+            "",
+            "length: model units, or 5m",
+            "one level for each distance: the coarsest that is good for --pixels from there",
+            {},
+            Completion::none},
            {"--pixels", "", "P", "1", "pixels", "what --distances allow", {}, Completion::none}}};
 }
 
 OptionGroup view_group() {
   const measure::View view;
-  return {"View",
-          {{"--height", "", "N", fmt::format("{}", view.height_px), "lines", "height of the screen", {}, Completion::none},
-           {"--fov", "", "A", fmt::format("{}", view.fov_degrees), "degrees", "vertical field of view", {},
-            Completion::none}}};
+  return {
+      "View",
+      {{"--height", "", "N", fmt::format("{}", view.height_px), "lines", "height of the screen", {}, Completion::none},
+       {"--fov",
+        "",
+        "A",
+        fmt::format("{}", view.fov_degrees),
+        "degrees",
+        "vertical field of view",
+        {},
+        Completion::none}}};
 }
 
 OptionGroup single_target_group() {
@@ -72,29 +91,53 @@ OptionGroup unit_group() {
 
 OptionGroup length_group() {
   OptionGroup group = unit_group();
-  group.options.push_back({"--absolute", "", "", "", "",
-                           "bare numbers of --error are model units, not shares of the diagonal", {}, Completion::none});
+  group.options.push_back({"--absolute",
+                           "",
+                           "",
+                           "",
+                           "",
+                           "bare numbers of --error are model units, not shares of the diagonal",
+                           {},
+                           Completion::none});
   return group;
 }
 
 OptionGroup method_group() {
-  return {"Method",
-          {{"--keep-border", "", "", "", "", "open borders stay exactly as they are", {}, Completion::none}}};
+  return {"Method", {{"--keep-border", "", "", "", "", "open borders stay exactly as they are", {}, Completion::none}}};
 }
 
 OptionGroup measuring_group(std::uint64_t samples) {
   return {"Measuring",
-          {{"--samples", "", "N", fmt::format("{}", samples), "points", "samples on each surface; all vertices come on top",
-            {}, Completion::none},
-           {"--seed", "", "S", fmt::format("{}", measure::DistanceOptions{}.seed), "", "seed of the samples", {},
+          {{"--samples",
+            "",
+            "N",
+            fmt::format("{}", samples),
+            "points",
+            "samples on each surface; all vertices come on top",
+            {},
+            Completion::none},
+           {"--seed",
+            "",
+            "S",
+            fmt::format("{}", measure::DistanceOptions{}.seed),
+            "",
+            "seed of the samples",
+            {},
             Completion::none}}};
 }
 
 OptionGroup output_group(bool compress) {
-  OptionGroup group{"Output", {{"--output", "-o", "OUTPUT", "", "", "file to write; never an input", {}, Completion::file}}};
+  OptionGroup group{"Output",
+                    {{"--output", "-o", "OUTPUT", "", "", "file to write; never an input", {}, Completion::file}}};
   if (compress) {
-    group.options.push_back({"--compress", "", "CODEC", "none", "", "how geometry is coded in glTF",
-                             {"none", "meshopt", "draco"}, Completion::choices});
+    group.options.push_back({"--compress",
+                             "",
+                             "CODEC",
+                             "none",
+                             "",
+                             "how geometry is coded in glTF",
+                             {"none", "meshopt", "draco"},
+                             Completion::choices});
   }
   group.options.push_back(json_option());
   return group;
@@ -104,7 +147,14 @@ OptionGroup result_group() { return {"Output", {json_option()}}; }
 
 OptionGroup general_group() {
   return {"General",
-          {{"--threads", "", "N", "0", "threads", "at most N threads, 0 = all; the result is the same", {}, Completion::none},
+          {{"--threads",
+            "",
+            "N",
+            "0",
+            "threads",
+            "at most N threads, 0 = all; the result is the same",
+            {},
+            Completion::none},
            {"--quiet", "-q", "", "", "", "only errors on standard error: no progress, no notes", {}, Completion::none},
            {"--verbose", "-v", "", "", "", "tell decisions and details", {}, Completion::none},
            {"--help", "-h", "", "", "", "this text", {}, Completion::none}}};
@@ -156,12 +206,17 @@ Result<std::vector<double>> to_model_units(const std::vector<LengthArgument>& le
   std::vector<double> values;
   for (const LengthArgument& length : lengths) {
     switch (length.kind) {
-      case LengthArgument::Kind::relative: values.push_back(length.value * diagonal); break;
-      case LengthArgument::Kind::model_units: values.push_back(length.value); break;
+      case LengthArgument::Kind::relative:
+        values.push_back(length.value * diagonal);
+        break;
+      case LengthArgument::Kind::model_units:
+        values.push_back(length.value);
+        break;
       case LengthArgument::Kind::metres:
         if (!(model.meters_per_unit > 0)) {
-          return fail(ErrorCode::bad_argument, fmt::format("'{}' has a unit, but the model's file has none", length.text),
-                      {}, "tell the model's unit with --unit mm (or cm, m, ...)");
+          return fail(ErrorCode::bad_argument,
+                      fmt::format("'{}' has a unit, but the model's file has none", length.text), {},
+                      "tell the model's unit with --unit mm (or cm, m, ...)");
         }
         values.push_back(length.value / model.meters_per_unit);
         break;
@@ -212,7 +267,9 @@ Result<measure::View> view_of(const Arguments& arguments) {
 
 io::Compression compression_of(const Arguments& arguments) {
   const std::string codec = arguments.text("--compress");
-  return codec == "meshopt" ? io::Compression::meshopt : codec == "draco" ? io::Compression::draco : io::Compression::none;
+  return codec == "meshopt" ? io::Compression::meshopt
+         : codec == "draco" ? io::Compression::draco
+                            : io::Compression::none;
 }
 
 void apply_unit(Model& model, const LengthRules& rules) {

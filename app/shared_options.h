@@ -14,16 +14,16 @@
 
 namespace lodestone::app {
 
-OptionGroup ladder_target_group();             ///< --levels, --ratio, --triangles, --error, --pixels, --distances (build)
-OptionGroup view_group();                      ///< --height, --fov
-OptionGroup single_target_group();             ///< --ratio, --triangles, --error (simplify)
-OptionGroup length_group();                    ///< --unit, --absolute
-OptionGroup unit_group();                      ///< --unit
-OptionGroup method_group();                    ///< --keep-border
+OptionGroup ladder_target_group();  ///< --levels, --ratio, --triangles, --error, --pixels, --distances (build)
+OptionGroup view_group();           ///< --height, --fov
+OptionGroup single_target_group();  ///< --ratio, --triangles, --error (simplify)
+OptionGroup length_group();         ///< --unit, --absolute
+OptionGroup unit_group();           ///< --unit
+OptionGroup method_group();         ///< --keep-border
 OptionGroup measuring_group(std::uint64_t samples);  ///< --samples, --seed
-OptionGroup output_group(bool compress);       ///< -o, --compress, --json
-OptionGroup result_group();                    ///< --json alone
-OptionGroup general_group();                   ///< --threads, --quiet, --verbose, --help
+OptionGroup output_group(bool compress);             ///< -o, --compress, --json
+OptionGroup result_group();                          ///< --json alone
+OptionGroup general_group();                         ///< --threads, --quiet, --verbose, --help
 
 /// A length as typed, to be turned into model units once the model is known.
 struct LengthArgument {

@@ -96,7 +96,8 @@ std::string table_of(const SimplifyReport& report) {
   Table table;
   table.add_column("", Table::Align::left);
   table.add_column("", Table::Align::left);
-  const double share = report.triangles_in == 0 ? 0 : static_cast<double>(report.triangles) / static_cast<double>(report.triangles_in);
+  const double share =
+      report.triangles_in == 0 ? 0 : static_cast<double>(report.triangles) / static_cast<double>(report.triangles_in);
   table.add_row({"triangles", fmt::format("{} of {} ({})", with_separators(report.triangles),
                                           with_separators(report.triangles_in), percent(share))});
   table.add_row({"error", fmt::format("{}{} ({} of the diagonal, {})", short_number(error.error), unit,

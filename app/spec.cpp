@@ -14,19 +14,21 @@ constexpr std::uint64_t kMeasureSamples = 1'000'000;
 InputSpec one_model() { return {"INPUT", 1, 1, {}, Completion::file}; }
 
 VerbSpec build_spec() {
-  return {"build",
-          "Makes a ladder of levels from a model and measures each level's error against the original.",
-          {"INPUT...", 1, kAnyNumber, {}, Completion::file},
-          {ladder_target_group(), view_group(), length_group(), method_group(), measuring_group(kBuildSamples),
-           output_group(true), general_group()},
-          {{"lod build statue.ply -o statue.glb", "five levels in one GLB (MSFT_lod), each with half the triangles"},
-           {"lod build statue.ply -o statue_LOD{level}.obj --error 0.05%,0.2%,1%",
-            "a file a level, each within a measured error"},
-           {"lod build models/ -o lods/ --ratio 50%,10% --json", "every model in a folder"}},
-          "OUTPUT is name.glb or name.gltf (all levels in one file), name_LOD{level}.obj (any format, a file a level), or a "
-          "folder with a slash at its end, where each input becomes name.glb. Several inputs, or a folder of them, need "
-          "a folder; a bad file is told and the others go on. In OUTPUT {name} stands for the input's name.",
-          run_build};
+  return {
+      "build",
+      "Makes a ladder of levels from a model and measures each level's error against the original.",
+      {"INPUT...", 1, kAnyNumber, {}, Completion::file},
+      {ladder_target_group(), view_group(), length_group(), method_group(), measuring_group(kBuildSamples),
+       output_group(true), general_group()},
+      {{"lod build statue.ply -o statue.glb", "five levels in one GLB (MSFT_lod), each with half the triangles"},
+       {"lod build statue.ply -o statue_LOD{level}.obj --error 0.05%,0.2%,1%",
+        "a file a level, each within a measured error"},
+       {"lod build models/ -o lods/ --ratio 50%,10% --json", "every model in a folder"}},
+      "OUTPUT is name.glb or name.gltf (all levels in one file), name_LOD{level}.obj (any format, a file a level), or "
+      "a "
+      "folder with a slash at its end, where each input becomes name.glb. Several inputs, or a folder of them, need "
+      "a folder; a bad file is told and the others go on. In OUTPUT {name} stands for the input's name.",
+      run_build};
 }
 
 VerbSpec simplify_spec() {
@@ -43,16 +45,17 @@ VerbSpec simplify_spec() {
 }
 
 VerbSpec measure_spec() {
-  return {"measure",
-          "Measures the distance between two surfaces, both ways; A is the original.",
-          {"A B", 2, 2, {}, Completion::file},
-          {measuring_group(kMeasureSamples), unit_group(), result_group(), general_group()},
-          {{"lod measure statue.ply small.ply", "how far apart they are"},
-           {"lod measure statue.ply small.ply --samples 200000 --json", "fewer samples, figures as JSON"},
-           {"lod measure tower.glb tower.ply --seed 7", "scenes are measured as drawn, all instances"}},
-          "Maxima are over the samples and all vertices, means over area-weighted samples. Relative figures are divided by "
-          "the diagonal of A's bounding box.",
-          run_measure};
+  return {
+      "measure",
+      "Measures the distance between two surfaces, both ways; A is the original.",
+      {"A B", 2, 2, {}, Completion::file},
+      {measuring_group(kMeasureSamples), unit_group(), result_group(), general_group()},
+      {{"lod measure statue.ply small.ply", "how far apart they are"},
+       {"lod measure statue.ply small.ply --samples 200000 --json", "fewer samples, figures as JSON"},
+       {"lod measure tower.glb tower.ply --seed 7", "scenes are measured as drawn, all instances"}},
+      "Maxima are over the samples and all vertices, means over area-weighted samples. Relative figures are divided by "
+      "the diagonal of A's bounding box.",
+      run_measure};
 }
 
 VerbSpec info_spec() {
@@ -80,21 +83,28 @@ VerbSpec convert_spec() {
 }
 
 VerbSpec sample_spec() {
-  return {"sample",
-          "Makes a model to try things on: the same file every time, on every machine.",
-          {"SAMPLE", 1, 1, {"sphere", "statue", "tower", "terrain"}, Completion::choices},
-          {{"Sample",
-            {{"--triangles", "", "N", "", "triangles",
-              "the nearest possible count (without: statue and terrain 100000, tower 20000)", {}, Completion::none},
-             {"--level", "", "N", "5", "subdivisions", "sphere: an icosphere of 20 * 4^N triangles", {}, Completion::none},
-             {"--seed", "", "S", "1", "", "another statue or terrain", {}, Completion::none}}},
-           output_group(false),
-           general_group()},
-          {{"lod sample statue -o statue.ply", "a closed bust of 100,000 triangles, rough like a scan"},
-           {"lod sample sphere --level 6 -o sphere.glb", "an icosphere of 81,920 triangles"},
-           {"lod sample tower --triangles 50000 -o tower.glb", "a lattice tower of instanced struts and discs"}},
-          "statue and terrain are made up of noise (--seed); terrain has open borders and texture coordinates.",
-          run_sample};
+  return {
+      "sample",
+      "Makes a model to try things on: the same file every time, on every machine.",
+      {"SAMPLE", 1, 1, {"sphere", "statue", "tower", "terrain"}, Completion::choices},
+      {{"Sample",
+        {{"--triangles",
+          "",
+          "N",
+          "",
+          "triangles",
+          "the nearest possible count (without: statue and terrain 100000, tower 20000)",
+          {},
+          Completion::none},
+         {"--level", "", "N", "5", "subdivisions", "sphere: an icosphere of 20 * 4^N triangles", {}, Completion::none},
+         {"--seed", "", "S", "1", "", "another statue or terrain", {}, Completion::none}}},
+       output_group(false),
+       general_group()},
+      {{"lod sample statue -o statue.ply", "a closed bust of 100,000 triangles, rough like a scan"},
+       {"lod sample sphere --level 6 -o sphere.glb", "an icosphere of 81,920 triangles"},
+       {"lod sample tower --triangles 50000 -o tower.glb", "a lattice tower of instanced struts and discs"}},
+      "statue and terrain are made up of noise (--seed); terrain has open borders and texture coordinates.",
+      run_sample};
 }
 
 VerbSpec help_spec() {

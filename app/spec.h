@@ -19,12 +19,12 @@ class Console;
 enum class Completion { none, choices, file, directory };
 
 struct OptionSpec {
-  std::string name;           ///< "--levels"
-  std::string short_name;     ///< "-o"; empty = none
-  std::string value;          ///< placeholder: "N"; empty = a switch
-  std::string default_value;  ///< as it would be typed; empty = none
-  std::string unit;           ///< "pixels"; empty = none
-  std::string text;           ///< what it does, a clause without full stop
+  std::string name;                  ///< "--levels"
+  std::string short_name;            ///< "-o"; empty = none
+  std::string value;                 ///< placeholder: "N"; empty = a switch
+  std::string default_value;         ///< as it would be typed; empty = none
+  std::string unit;                  ///< "pixels"; empty = none
+  std::string text;                  ///< what it does, a clause without full stop
   std::vector<std::string> choices;  ///< the only values allowed; empty = free
   Completion completion = Completion::none;
 

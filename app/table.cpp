@@ -18,7 +18,8 @@ std::string Table::text() const {
   std::vector<std::vector<std::string>> lines;
   std::vector<std::string> titles;
   for (const Column& column : columns_) titles.push_back(column.title);
-  if (std::any_of(titles.begin(), titles.end(), [](const std::string& t) { return !t.empty(); })) lines.push_back(titles);
+  if (std::any_of(titles.begin(), titles.end(), [](const std::string& t) { return !t.empty(); }))
+    lines.push_back(titles);
   lines.insert(lines.end(), rows_.begin(), rows_.end());
 
   std::vector<std::size_t> widths(columns_.size(), 0);

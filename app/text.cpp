@@ -15,7 +15,10 @@ std::size_t utf8_length(std::string_view text, std::uint32_t& code) {
     code = first;
     return 1;
   }
-  const std::size_t length = first >= 0xf0 && first < 0xf8 ? 4 : first >= 0xe0 && first < 0xf0 ? 3 : first >= 0xc2 && first < 0xe0 ? 2 : 0;
+  const std::size_t length = first >= 0xf0 && first < 0xf8   ? 4
+                             : first >= 0xe0 && first < 0xf0 ? 3
+                             : first >= 0xc2 && first < 0xe0 ? 2
+                                                             : 0;
   if (length == 0 || text.size() < length) return 0;
   code = first & (0xffu >> (length + 1));
   for (std::size_t i = 1; i < length; ++i) {

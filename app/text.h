@@ -10,7 +10,8 @@
 
 namespace lodestone::app {
 
-/// Control characters, direction marks and bytes that are not UTF-8 become \xNN, so a file name can't play with a terminal.
+/// Control characters, direction marks and bytes that are not UTF-8 become \xNN, so a file name can't play with a
+/// terminal.
 std::string printable(std::string_view text);
 
 /// Columns that UTF-8 text takes, one a code point.

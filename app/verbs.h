@@ -1,4 +1,5 @@
-// The verbs: one function and one file each. Each prints its result and returns the exit code, or an Error for main to tell.
+// The verbs: one function and one file each. Each prints its result and returns the exit code, or an Error for main to
+// tell.
 #pragma once
 
 #include "app/command_line.h"

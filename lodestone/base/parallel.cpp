@@ -17,12 +17,13 @@ namespace lodestone {
 #ifndef LODESTONE_STD_THREADS
 
 struct ThreadLimit::Control {
-  tbb::global_control control;
+  tbb::global_control control;  // built in place: a copy would end the limit with its original
+  explicit Control(std::size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
 };
 
 ThreadLimit::ThreadLimit(int threads) {
-  const unsigned wanted = threads > 0 ? static_cast<unsigned>(threads) : std::max(1U, std::thread::hardware_concurrency());
-  control_ = std::make_unique<Control>(Control{{tbb::global_control::max_allowed_parallelism, wanted}});
+  control_ = std::make_unique<Control>(
+      threads > 0 ? static_cast<std::size_t>(threads) : std::max<std::size_t>(1, std::thread::hardware_concurrency()));
 }
 
 namespace parallel_detail {

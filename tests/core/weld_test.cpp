@@ -79,7 +79,7 @@ TEST(Weld, classes_ignore_the_streams_left_out) {
     EXPECT_EQ(mesh.wedge_vertex[by_none[w]], mesh.wedge_vertex[w]);
   }
   for (std::uint32_t w = 1; w < mesh.wedge_count(); ++w) {
-    if (mesh.wedge_vertex[w] == mesh.wedge_vertex[0]) EXPECT_EQ(by_none[w], 0U);
+    EXPECT_EQ(by_none[w] == 0, mesh.wedge_vertex[w] == mesh.wedge_vertex[0]);
   }
 }
 

@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+
+#include "app/input.h"
+#include "app/json.h"
+#include "app/samples.h"
+#include "app/stopwatch.h"
+#include "app/text.h"
+#include "app/verbs.h"
+#include "lodestone/base/units.h"
+#include "lodestone/io/write.h"
+
+namespace lodestone::app {
+namespace {
+
+constexpr std::size_t kDefaultTriangles = 100'000, kDefaultTowerTriangles = 20'000;
+
+Result<Model> make_sphere_of(const Arguments& arguments, std::size_t triangles) {
+  if (arguments.has("--triangles")) {
+    if (arguments.has("--level")) {
+      return fail(ErrorCode::bad_argument, "--triangles and --level can't be given together", {}, "choose one");
+    }
+    return make_sphere(triangles);
+  }
+  const Result<std::uint64_t> level = arguments.count("--level");
+  if (!level) return fail(level.error());
+  if (*level > static_cast<std::uint64_t>(kMostSphereLevel)) {
+    return fail(ErrorCode::bad_argument, fmt::format("--level is {}, the limit is {}", *level, kMostSphereLevel));
+  }
+  return make_icosphere(static_cast<int>(*level));
+}
+
+Result<Model> make_sample(const Arguments& arguments) {
+  const std::string& name = arguments.inputs.front();
+  const Result<std::uint64_t> seed = arguments.count("--seed");
+  if (!seed) return fail(seed.error());
+  std::size_t triangles = name == "tower" ? kDefaultTowerTriangles : kDefaultTriangles;
+  if (arguments.has("--triangles")) {
+    const Result<std::uint64_t> wanted = arguments.count("--triangles", 1);
+    if (!wanted) return fail(wanted.error());
+    if (*wanted > kMostSampleTriangles) {
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("--triangles is {}, the limit is {}", *wanted, with_separators(kMostSampleTriangles)));
+    }
+    triangles = *wanted;
+  }
+  if (name == "sphere") return make_sphere_of(arguments, triangles);
+  if (arguments.has("--level")) {
+    return fail(ErrorCode::bad_argument, fmt::format("{} has no --level", name), {}, "use --triangles N");
+  }
+  if (name == "statue") return make_statue(triangles, *seed);
+  if (name == "tower") return make_tower(triangles);
+  return make_terrain(triangles, *seed);
+}
+
+}  // namespace
+
+Result<ExitCode> run_sample(const Arguments& arguments, Console& console) {
+  SampleReport report;
+  report.sample = arguments.inputs.front();
+  if (!arguments.has("--output")) {
+    return fail(ErrorCode::bad_argument, "sample needs an output", {},
+                fmt::format("add one, such as -o {}.glb", report.sample));
+  }
+  report.file = arguments.text("--output");
+  if (const Result<void> checked = check_output(report.file, {}); !checked) return fail(checked.error());
+  Stopwatch watch;
+  const Result<Model> model = make_sample(arguments);
+  if (!model) return fail(model.error());
+  if (console.task().cancelled()) return cancelled_error("making the sample");
+  const Result<io::WriteReport> written = io::write_model(*model, report.file, {}, console.task().part(1, "writing"));
+  if (!written) return fail(written.error());
+  for (const std::string& warning : written->warnings) console.note(fmt::format("{}: {}", report.file, warning));
+  report.triangles = drawn_triangles(*model);
+  report.instances = model->instances.size();
+  for (const Mesh& mesh : model->meshes) report.vertices += mesh.vertex_count();
+  report.bytes = written->total_bytes;
+  report.seconds = watch.total();
+  console.result(arguments.has("--json") ? to_json(report)
+                                         : fmt::format("{}: {} triangles, {}\n", printable(report.file),
+                                                       with_separators(report.triangles), human_bytes(report.bytes)));
+  return ExitCode::done;
+}
+
+}  // namespace lodestone::app
