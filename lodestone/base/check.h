@@ -9,8 +9,8 @@ namespace lodestone {
 }  // namespace lodestone
 
 /// Guards an invariant or a size: `LODESTONE_CHECK(a.size() == b.size(), "one weight a vertex");`
-#define LODESTONE_CHECK(condition, message)                                                            \
-  do {                                                                                                 \
-    if (!(condition)) [[unlikely]]                                                                     \
-      ::lodestone::check_failed(__FILE__, __LINE__, #condition, message);                              \
+#define LODESTONE_CHECK(condition, message)                               \
+  do {                                                                    \
+    if (!(condition)) [[unlikely]]                                        \
+      ::lodestone::check_failed(__FILE__, __LINE__, #condition, message); \
   } while (false)

@@ -22,8 +22,8 @@ struct ThreadLimit::Control {
 };
 
 ThreadLimit::ThreadLimit(int threads) {
-  control_ = std::make_unique<Control>(
-      threads > 0 ? static_cast<std::size_t>(threads) : std::max<std::size_t>(1, std::thread::hardware_concurrency()));
+  control_ = std::make_unique<Control>(threads > 0 ? static_cast<std::size_t>(threads)
+                                                   : std::max<std::size_t>(1, std::thread::hardware_concurrency()));
 }
 
 namespace parallel_detail {

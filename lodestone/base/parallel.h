@@ -13,8 +13,8 @@
 
 namespace lodestone {
 
-/// While it lives, at most `threads` threads work in the whole process. For main functions only (the one allowed global);
-/// 0 = as many as the hardware has. Without it a Task's threads() above the hardware's count has no effect.
+/// While it lives, at most `threads` threads work in the whole process. For main functions only (the one allowed
+/// global); 0 = as many as the hardware has. Without it a Task's threads() above the hardware's count has no effect.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);

@@ -22,7 +22,7 @@ Result<Length> parse_length(std::string_view text) {
     std::string_view name;
     double metres;
   };
-  constexpr Unit kUnits[] = {{"um", 1e-6}, {"mm", 1e-3},    {"cm", 1e-2},   {"dm", 0.1},
+  constexpr Unit kUnits[] = {{"um", 1e-6}, {"mm", 1e-3},   {"cm", 1e-2},   {"dm", 0.1},
                              {"m", 1.0},   {"km", 1000.0}, {"in", 0.0254}, {"ft", 0.3048}};
   if (unit.empty()) return Length{number, Length::Kind::relative};
   if (unit == "%") return Length{number / 100.0, Length::Kind::relative};

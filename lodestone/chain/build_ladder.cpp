@@ -32,7 +32,8 @@ tl::unexpected<Error> bad(std::string what, std::string remedy) {
 }
 
 Result<void> check(const LadderOptions& options) {
-  const int families = (options.ratios.empty() ? 0 : 1) + (options.triangles.empty() ? 0 : 1) + (options.errors.empty() ? 0 : 1);
+  const int families =
+      (options.ratios.empty() ? 0 : 1) + (options.triangles.empty() ? 0 : 1) + (options.errors.empty() ? 0 : 1);
   if (families > 1) return bad("ratios, triangle counts and errors are asked for at once", "give one of them");
   if (families == 0 && options.levels < 2) {
     return bad(fmt::format("{} levels leave nothing to make", options.levels), "ask for 2 or more, with level 0");
@@ -106,8 +107,9 @@ Result<Cut> make_cut(const CollapsePlan& plan, std::size_t prefix, const Referen
   return cut;
 }
 
-// The coarsest prefix found whose measured maximum is within `limit`, not finer than `start`: bisection on the logarithm of the
-// triangle count until the bracket is within one percent. Nothing within the limit: the cut at `start` itself.
+// The coarsest prefix found whose measured maximum is within `limit`, not finer than `start`: bisection on the
+// logarithm of the triangle count until the bracket is within one percent. Nothing within the limit: the cut at `start`
+// itself.
 Result<Cut> find_error_cut(const CollapsePlan& plan, std::size_t start, double limit, const Reference& reference,
                            const measure::DistanceOptions& options, const Task& task) {
   const Task probes = task.part(0.9, "searching");
@@ -148,8 +150,8 @@ Result<Cut> find_error_cut(const CollapsePlan& plan, std::size_t start, double l
 }
 
 std::string count_shortfall(const CollapsePlan& plan, std::size_t wanted, std::size_t got) {
-  return fmt::format("{} triangles were asked for, {} are the fewest: {}", with_separators(wanted), with_separators(got),
-                     plan.why_it_ends());
+  return fmt::format("{} triangles were asked for, {} are the fewest: {}", with_separators(wanted),
+                     with_separators(got), plan.why_it_ends());
 }
 
 Level original_level(const Model& original, double diagonal) {
@@ -201,7 +203,8 @@ Result<void> add_error_levels(LadderResult& result, const CollapsePlan& plan, co
     if (!cut) return fail(cut.error());
     if (cut->prefix == last) {
       result.shortfalls.push_back(
-          {i + 1, fmt::format("nothing coarser than the level before has a measured error within {:.6g}", options.errors[i])});
+          {i + 1,
+           fmt::format("nothing coarser than the level before has a measured error within {:.6g}", options.errors[i])});
       result.simplify_seconds += cut->simplify_seconds;
       result.measure_seconds += cut->measure_seconds;
       continue;
@@ -233,7 +236,8 @@ Result<LadderResult> build_ladder(Model original, const LadderOptions& options, 
   result.ladder.original = std::move(original);
   const Model& model = result.ladder.original;
   const Stopwatch collapsing;
-  const Result<CollapsePlan> plan = CollapsePlan::create(model, smallest, options.keep_border, task.part(0.4, "collapsing"));
+  const Result<CollapsePlan> plan =
+      CollapsePlan::create(model, smallest, options.keep_border, task.part(0.4, "collapsing"));
   if (!plan) return fail(plan.error());
   result.simplify_seconds = collapsing.seconds();
   const Stopwatch preparing;
@@ -267,9 +271,9 @@ Result<SimplifyModelResult> simplify_model(const Model& original, const Simplify
   if (!reference) return fail(reference.error());
   result.measure_seconds = preparing.seconds();
   const Task rest = task.part(0.4, "measuring");
-  Result<Cut> cut = by_count
-                        ? make_cut(*plan, plan->prefix_for(options.target_triangles), *reference, options.distance, rest)
-                        : find_error_cut(*plan, 0, options.max_error, *reference, options.distance, rest);
+  Result<Cut> cut =
+      by_count ? make_cut(*plan, plan->prefix_for(options.target_triangles), *reference, options.distance, rest)
+               : find_error_cut(*plan, 0, options.max_error, *reference, options.distance, rest);
   if (!cut) return fail(cut.error());
   result.simplify_seconds += cut->simplify_seconds;
   result.measure_seconds += cut->measure_seconds;
@@ -301,7 +305,8 @@ std::vector<std::vector<double>> screen_coverages(const Ladder& ladder, const me
     const double radius = box.diagonal() / 2;
     std::vector<double> row;
     for (std::size_t level = 1; level < ladder.levels.size(); ++level) {
-      row.push_back(measure::screen_coverage(radius, measure::switch_distance(ladder.levels[level].error.error, 1, view), view));
+      row.push_back(
+          measure::screen_coverage(radius, measure::switch_distance(ladder.levels[level].error.error, 1, view), view));
     }
     row.push_back(0);  // the coarsest never vanishes
     rows.push_back(std::move(row));

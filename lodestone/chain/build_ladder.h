@@ -15,16 +15,16 @@
 
 namespace lodestone::chain {
 
-/// What the coarser levels shall be. At most one of `ratios`, `triangles`, `errors` is filled; when none is, `levels` rules:
-/// level 0 and levels - 1 coarser ones, each with half the triangles of the one before.
+/// What the coarser levels shall be. At most one of `ratios`, `triangles`, `errors` is filled; when none is, `levels`
+/// rules: level 0 and levels - 1 coarser ones, each with half the triangles of the one before.
 struct LadderOptions {
-  std::size_t levels = 5;               ///< with level 0; at least 2
-  std::vector<double> ratios;           ///< share of the drawn triangles kept, (0, 1), one a coarser level, falling
-  std::vector<std::size_t> triangles;   ///< drawn triangles, one a coarser level, falling
-  std::vector<double> errors;           ///< measured maximum allowed, model units, one a coarser level, rising:
-                                        ///< the coarsest mesh found within it, by bisection over one run's log
-  bool keep_border = false;             ///< open borders stay as they are
-  measure::DistanceOptions distance;    ///< samples and seed of the measurement
+  std::size_t levels = 5;              ///< with level 0; at least 2
+  std::vector<double> ratios;          ///< share of the drawn triangles kept, (0, 1), one a coarser level, falling
+  std::vector<std::size_t> triangles;  ///< drawn triangles, one a coarser level, falling
+  std::vector<double> errors;          ///< measured maximum allowed, model units, one a coarser level, rising:
+                                       ///< the coarsest mesh found within it, by bisection over one run's log
+  bool keep_border = false;            ///< open borders stay as they are
+  measure::DistanceOptions distance;   ///< samples and seed of the measurement
 };
 
 /// A level that is not what was asked.
@@ -39,9 +39,9 @@ struct LadderResult {
   double simplify_seconds = 0, measure_seconds = 0;
 };
 
-/// Runs edge collapse once on every mesh, merges the collapses by error times the largest instance scale, cuts the levels
-/// from that one record and measures each in world space. A ladder that can't shrink further ends early, with a shortfall.
-/// Errors: bad_argument, empty (nothing drawn), cancelled.
+/// Runs edge collapse once on every mesh, merges the collapses by error times the largest instance scale, cuts the
+/// levels from that one record and measures each in world space. A ladder that can't shrink further ends early, with a
+/// shortfall. Errors: bad_argument, empty (nothing drawn), cancelled.
 Result<LadderResult> build_ladder(Model original, const LadderOptions& options = {}, Task task = {});
 
 struct SimplifyModelOptions {

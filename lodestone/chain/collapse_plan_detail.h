@@ -16,8 +16,8 @@ namespace lodestone::chain::detail {
 
 class CollapsePlan {
  public:
-  /// Collapses every drawn mesh as far as `smallest` drawn triangles may need (1 = as far as it goes). `original` must outlive
-  /// the plan. Errors: empty, cancelled.
+  /// Collapses every drawn mesh as far as `smallest` drawn triangles may need (1 = as far as it goes). `original` must
+  /// outlive the plan. Errors: empty, cancelled.
   static Result<CollapsePlan> create(const Model& original, std::size_t smallest, bool keep_border, Task task);
 
   /// Number of merged collapses.

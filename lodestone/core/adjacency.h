@@ -12,7 +12,7 @@ namespace lodestone {
 
 /// Triangles around each vertex, in ascending order: offsets into one array.
 struct VertexTriangles {
-  std::vector<std::uint32_t> first;      ///< vertex_count + 1 offsets
+  std::vector<std::uint32_t> first;  ///< vertex_count + 1 offsets
   std::vector<std::uint32_t> triangles;
 
   std::span<const std::uint32_t> of(std::uint32_t vertex) const {

@@ -20,9 +20,9 @@ enum class Semantic {
   morph_position,  ///< position delta of a morph target; the same on all wedges of a vertex
   morph_normal,
   morph_tangent,
-  morph_other,     ///< any other delta of a morph target (UV, colour)
-  categorical,     ///< ids and labels: picked, never averaged
-  generic,         ///< any other number: averaged
+  morph_other,  ///< any other delta of a morph target (UV, colour)
+  categorical,  ///< ids and labels: picked, never averaged
+  generic,      ///< any other number: averaged
 };
 
 /// The type that the values had in the file, kept for writing back.

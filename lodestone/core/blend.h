@@ -14,8 +14,8 @@ class AttributeBlender {
   explicit AttributeBlender(std::vector<AttributeStream>& streams);
 
   /// Tuple `to` becomes (1 - t) of itself and t of tuple `from`, t in [0, 1]. Normals and tangents stay unit where they
-  /// can; what is picked comes from the nearer one; skin influences merge as (joint, weight) pairs, the heaviest kept, their
-  /// sum as before.
+  /// can; what is picked comes from the nearer one; skin influences merge as (joint, weight) pairs, the heaviest kept,
+  /// their sum as before.
   void blend(std::uint32_t to, std::uint32_t from, float t);
 
  private:
@@ -26,7 +26,7 @@ class AttributeBlender {
 
   std::vector<AttributeStream>& streams_;
   std::vector<SkinSet> skin_;
-  std::vector<std::size_t> plain_;  // all streams that are not part of a skin set
+  std::vector<std::size_t> plain_;                           // all streams that are not part of a skin set
   std::vector<std::pair<std::uint32_t, float>> influences_;  // scratch
 };
 

@@ -102,7 +102,8 @@ std::vector<AttributeStream> blend_attributes(const Mesh& mesh, const CollapseLo
   if (streams.empty()) return streams;
   AttributeBlender blender(streams);
   const std::size_t wedges = count < log.collapses.size() ? log.collapses[count].first_wedge : log.wedges.size();
-  for (std::size_t i = 0; i < wedges; ++i) blender.blend(log.wedges[i].kept, log.wedges[i].removed, log.wedges[i].blend);
+  for (std::size_t i = 0; i < wedges; ++i)
+    blender.blend(log.wedges[i].kept, log.wedges[i].removed, log.wedges[i].blend);
   return streams;
 }
 

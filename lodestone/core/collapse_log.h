@@ -22,8 +22,8 @@ struct Collapse {
   std::uint32_t faces = 0;              ///< triangles that vanish with it
 };
 
-/// Attributes of wedge `kept` move towards those of `removed` by `blend`, 0 to 1. Where `ends` is set, `removed` is a wedge of
-/// the removed vertex whose corners use `kept` from now on; else it only lends its values. 16 bytes.
+/// Attributes of wedge `kept` move towards those of `removed` by `blend`, 0 to 1. Where `ends` is set, `removed` is a
+/// wedge of the removed vertex whose corners use `kept` from now on; else it only lends its values. 16 bytes.
 struct WedgeMerge {
   std::uint32_t kept = 0, removed = 0;
   float blend = 0;
@@ -50,9 +50,9 @@ struct ReplayResult {
   std::vector<std::uint32_t> origin;  ///< for each triangle, the input triangle that it descends from
 };
 
-/// Applies the first `count` collapses of `log` to `mesh`, the mesh that the log was made from. Attributes: blended ones
-/// interpolated, normals and tangents unit again, weights pruned to the sets there are and summing to one.
-/// O(mesh + count). Errors: cancelled.
+/// Applies the first `count` collapses of `log` to `mesh`, the mesh that the log was made from. Attributes: blended
+/// ones interpolated, normals and tangents unit again, weights pruned to the sets there are and summing to one. O(mesh
+/// + count). Errors: cancelled.
 Result<ReplayResult> replay(const Mesh& mesh, const CollapseLog& log, std::size_t count, Task task = {});
 
 }  // namespace lodestone

@@ -25,17 +25,17 @@ struct FaceGroup {
   std::string name;                ///< part or group name as the file said; may be empty
 };
 
-/// A triangle mesh with wedges. A *vertex* is a position; a *wedge* is a vertex with one tuple of attributes; corners of
-/// triangles name wedges. An edge whose two sides use different wedges is a seam: nothing else marks one.
+/// A triangle mesh with wedges. A *vertex* is a position; a *wedge* is a vertex with one tuple of attributes; corners
+/// of triangles name wedges. An edge whose two sides use different wedges is a seam: nothing else marks one.
 struct Mesh {
   std::string name;
-  std::vector<Vec3f> positions;               ///< one a vertex, model units, relative to `offset`
-  Vec3d offset;                               ///< added to every position before the instance's transform
-  std::vector<Triangle> triangles;            ///< wedge indices
-  std::vector<std::uint32_t> wedge_vertex;    ///< vertex of each wedge; empty when wedge i is vertex i
-  std::vector<AttributeStream> attributes;    ///< one tuple a wedge in each
-  std::vector<std::uint32_t> face_group;      ///< index into `groups`, one a triangle; empty = all in group 0
-  std::vector<FaceGroup> groups;              ///< may be empty when nothing is named
+  std::vector<Vec3f> positions;             ///< one a vertex, model units, relative to `offset`
+  Vec3d offset;                             ///< added to every position before the instance's transform
+  std::vector<Triangle> triangles;          ///< wedge indices
+  std::vector<std::uint32_t> wedge_vertex;  ///< vertex of each wedge; empty when wedge i is vertex i
+  std::vector<AttributeStream> attributes;  ///< one tuple a wedge in each
+  std::vector<std::uint32_t> face_group;    ///< index into `groups`, one a triangle; empty = all in group 0
+  std::vector<FaceGroup> groups;            ///< may be empty when nothing is named
 
   std::size_t vertex_count() const { return positions.size(); }
   std::size_t wedge_count() const { return wedge_vertex.empty() ? positions.size() : wedge_vertex.size(); }

@@ -31,12 +31,12 @@ struct Model {
   std::vector<Instance> instances;
   std::vector<Material> materials;
   std::shared_ptr<const io::Document> document;
-  double meters_per_unit = 0;         ///< 1 for glTF; 0 = the file doesn't say
-  /// True where v = 0 is the image's top row (glTF); false where it is the bottom one (OBJ, PLY). UVs are kept as the file
-  /// had them; writers of the other kind turn them: v' = 1 - v.
+  double meters_per_unit = 0;  ///< 1 for glTF; 0 = the file doesn't say
+  /// True where v = 0 is the image's top row (glTF); false where it is the bottom one (OBJ, PLY). UVs are kept as the
+  /// file had them; writers of the other kind turn them: v' = 1 - v.
   bool uv_origin_top = false;
-  std::uint64_t file_vertices = 0;    ///< as stored in the file, before welding
-  std::uint64_t file_triangles = 0;   ///< as stored in the file, polygons cut into triangles, nothing left out
+  std::uint64_t file_vertices = 0;   ///< as stored in the file, before welding
+  std::uint64_t file_triangles = 0;  ///< as stored in the file, polygons cut into triangles, nothing left out
   /// What a reader found and put right or left out, in plain words, for the user.
   std::vector<std::string> warnings;
 };

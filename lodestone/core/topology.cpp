@@ -47,8 +47,8 @@ std::uint64_t count_duplicates(const Mesh& mesh, const Task& task) {
   return count;
 }
 
-// The edges opposite to v must form one path or one ring: no end met by three of them, at most two by one, all connected.
-// O(valence log valence). `ids` and `links` are scratch.
+// The edges opposite to v must form one path or one ring: no end met by three of them, at most two by one, all
+// connected. O(valence log valence). `ids` and `links` are scratch.
 bool is_manifold_vertex(const Mesh& mesh, std::uint32_t v, std::span<const std::uint32_t> star,
                         std::vector<std::uint32_t>& ids, std::vector<std::uint32_t>& links) {
   links.clear();

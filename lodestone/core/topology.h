@@ -16,13 +16,13 @@ struct Topology {
   std::uint64_t duplicate_faces = 0;       ///< triangles whose three vertices are those of an earlier one, in any order
   // The following leave out triangles with a repeated vertex.
   std::uint64_t edges = 0;
-  std::uint64_t boundary_edges = 0;     ///< exactly one triangle
-  std::uint64_t nonmanifold_edges = 0;  ///< three or more triangles
-  std::uint64_t inconsistent_edges = 0; ///< two triangles walking it the same way
+  std::uint64_t boundary_edges = 0;        ///< exactly one triangle
+  std::uint64_t nonmanifold_edges = 0;     ///< three or more triangles
+  std::uint64_t inconsistent_edges = 0;    ///< two triangles walking it the same way
   std::uint64_t nonmanifold_vertices = 0;  ///< whose opposite edges are not one path or ring
-  std::uint64_t components = 0;         ///< pieces connected through shared vertices
-  bool closed = false;                  ///< at least one triangle and no boundary edge
-  bool manifold = false;                ///< at least one triangle, no non-manifold edge or vertex
+  std::uint64_t components = 0;            ///< pieces connected through shared vertices
+  bool closed = false;                     ///< at least one triangle and no boundary edge
+  bool manifold = false;                   ///< at least one triangle, no non-manifold edge or vertex
 };
 
 /// O(n log n).

@@ -1,4 +1,5 @@
-// Method   Partition by hash into buckets that fit the cache, one small open-addressing table a bucket; the first of equals in
+// Method   Partition by hash into buckets that fit the cache, one small open-addressing table a bucket; the first of
+// equals in
 //          index order represents them, so neither hash nor threads show in the result.
 // Steps    hash keys -> bucket (stable counting sort) -> representatives -> renumber -> drop what no triangle uses
 #include "lodestone/core/weld.h"

@@ -11,7 +11,8 @@ namespace lodestone {
 /// Empty until something is added (min > max).
 template <class T>
 struct Box3 {
-  Vec3<T> min{std::numeric_limits<T>::infinity(), std::numeric_limits<T>::infinity(), std::numeric_limits<T>::infinity()};
+  Vec3<T> min{std::numeric_limits<T>::infinity(), std::numeric_limits<T>::infinity(),
+              std::numeric_limits<T>::infinity()};
   Vec3<T> max = -min;
 
   constexpr bool empty() const { return !(min.x <= max.x); }

@@ -41,8 +41,9 @@ struct Mat4d {
   }
   constexpr bool is_identity() const { return *this == Mat4d{}; }
 
-  /// How much a length may grow: an upper bound of the largest singular value of the upper left 3x3, exact for rotations
-  /// with uniform scale (the Frobenius norm over the root of 3 would be too small for others, so columns are used).
+  /// How much a length may grow: an upper bound of the largest singular value of the upper left 3x3, exact for
+  /// rotations with uniform scale (the Frobenius norm over the root of 3 would be too small for others, so columns are
+  /// used).
   double scale_bound() const {
     const Vec3d x{m[0], m[1], m[2]}, y{m[4], m[5], m[6]}, z{m[8], m[9], m[10]};
     const double longest = std::max({length(x), length(y), length(z)});
@@ -67,9 +68,22 @@ struct Mat4d {
   /// From a unit quaternion (x, y, z, w).
   static constexpr Mat4d rotation(double x, double y, double z, double w) {
     Mat4d out;
-    out.m = {1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w), 0, 2 * (x * y - z * w),
-             1 - 2 * (x * x + z * z), 2 * (y * z + x * w), 0, 2 * (x * z + y * w), 2 * (y * z - x * w),
-             1 - 2 * (x * x + y * y), 0, 0, 0, 0, 1};
+    out.m = {1 - 2 * (y * y + z * z),
+             2 * (x * y + z * w),
+             2 * (x * z - y * w),
+             0,
+             2 * (x * y - z * w),
+             1 - 2 * (x * x + z * z),
+             2 * (y * z + x * w),
+             0,
+             2 * (x * z + y * w),
+             2 * (y * z - x * w),
+             1 - 2 * (x * x + y * y),
+             0,
+             0,
+             0,
+             0,
+             1};
     return out;
   }
 };

@@ -32,12 +32,14 @@ ClosestPoint closest_point(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
   const double d3 = dot(ab, bp), d4 = dot(ac, bp);
   if (d3 >= 0 && d4 <= d3) return found(b);
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return d1 - d3 > 0 ? found(a + ab * (d1 / (d1 - d3))) : closest_on_sides(p, a, b, c);
+  if (vc <= 0 && d1 >= 0 && d3 <= 0)
+    return d1 - d3 > 0 ? found(a + ab * (d1 / (d1 - d3))) : closest_on_sides(p, a, b, c);
   const Vec3d cp = p - c;
   const double d5 = dot(ab, cp), d6 = dot(ac, cp);
   if (d6 >= 0 && d5 <= d6) return found(c);
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return d2 - d6 > 0 ? found(a + ac * (d2 / (d2 - d6))) : closest_on_sides(p, a, b, c);
+  if (vb <= 0 && d2 >= 0 && d6 <= 0)
+    return d2 - d6 > 0 ? found(a + ac * (d2 / (d2 - d6))) : closest_on_sides(p, a, b, c);
   const double va = d3 * d6 - d5 * d4;
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
     const double sum = (d4 - d3) + (d5 - d6);

@@ -11,8 +11,9 @@ constexpr Vec3<T> scaled_normal(Vec3<T> a, Vec3<T> b, Vec3<T> c) {
   return cross(b - a, c - a);
 }
 
-/// Squared distance from p to the triangle abc and the closest point. Any triangle, degenerate ones too (then the closest
-/// point on its sides). Source: the case analysis over the triangle's Voronoi regions, Ericson 2005, section 5.1.5.
+/// Squared distance from p to the triangle abc and the closest point. Any triangle, degenerate ones too (then the
+/// closest point on its sides). Source: the case analysis over the triangle's Voronoi regions, Ericson 2005,
+/// section 5.1.5.
 struct ClosestPoint {
   Vec3d point;
   double distance_sq;

@@ -63,7 +63,9 @@ constexpr Vec3<T> lerp(Vec3<T> a, Vec3<T> b, T t) {
 }
 
 constexpr Vec3d to_double(Vec3f a) { return {double(a.x), double(a.y), double(a.z)}; }
-constexpr Vec3f to_float(Vec3d a) { return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)}; }
+constexpr Vec3f to_float(Vec3d a) {
+  return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
+}
 
 template <class T>
 bool is_finite(Vec3<T> a) {

@@ -1,4 +1,5 @@
-// Method   area-weighted stratified samples and all vertices, each to its closest point on the other surface; then the surface around
+// Method   area-weighted stratified samples and all vertices, each to its closest point on the other surface; then the
+// surface around
 //          the worst of them is subdivided until the maximum stands
 // Cost     O((samples + vertices) log triangles); neighbouring queries hand each other a hint
 #include <algorithm>
@@ -77,15 +78,18 @@ Vec3d unit_normal(const spatial::Surface& surface, std::uint32_t triangle) {
   return normalized(scaled_normal(a, b, c));
 }
 
-// Samples begin..end of `count`: the i-th lies in the i-th of `count` equal shares of the area, at random within its triangle.
+// Samples begin..end of `count`: the i-th lies in the i-th of `count` equal shares of the area, at random within its
+// triangle.
 Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const std::vector<double>& areas,
                      std::uint64_t count, std::uint64_t seed, std::size_t begin, std::size_t end) {
   Sums sums;
   std::size_t t = 0;
   std::uint32_t hint = kNone;
   for (std::size_t i = begin; i < end; ++i) {
-    const double place = (static_cast<double>(i) + random_unit(seed, 3 * i)) / static_cast<double>(count) * areas.back();
-    if (i == begin) t = static_cast<std::size_t>(std::upper_bound(areas.begin(), areas.end(), place) - areas.begin()) - 1;
+    const double place =
+        (static_cast<double>(i) + random_unit(seed, 3 * i)) / static_cast<double>(count) * areas.back();
+    if (i == begin)
+      t = static_cast<std::size_t>(std::upper_bound(areas.begin(), areas.end(), place) - areas.begin()) - 1;
     while (t + 2 < areas.size() && areas[t + 1] <= place) ++t;
     t = std::min(t, from.triangles.size() - 1);
     const auto [a, b, c] = from.corners(t);
@@ -129,8 +133,8 @@ Sums measure_vertices(const spatial::Surface& from, const spatial::Bvh& to, cons
   return sums;
 }
 
-// Cuts the triangle of a peak into ever smaller quarters where the distance could still exceed the maximum by 1 %: nowhere on a
-// piece is it more than at its centre plus the piece's radius. Bounded by a budget of queries.
+// Cuts the triangle of a peak into ever smaller quarters where the distance could still exceed the maximum by 1 %:
+// nowhere on a piece is it more than at its centre plus the piece's radius. Bounded by a budget of queries.
 Peak sharpen_peak(const spatial::Surface& from, const spatial::Bvh& to, const Peak& peak, double known_max) {
   struct Piece {
     std::array<Vec3d, 3> corners;
@@ -148,7 +152,8 @@ Peak sharpen_peak(const spatial::Surface& from, const spatial::Bvh& to, const Pe
     if (nearest.distance_sq > best.distance_sq) best = {nearest.distance_sq, peak.triangle, center};
     const double d = std::sqrt(nearest.distance_sq);
     max = std::max(max, d);
-    return Piece{c, d, std::sqrt(std::max({length_sq(c[0] - center), length_sq(c[1] - center), length_sq(c[2] - center)}))};
+    return Piece{c, d,
+                 std::sqrt(std::max({length_sq(c[0] - center), length_sq(c[1] - center), length_sq(c[2] - center)}))};
   };
   const auto promise = [](const Piece& a, const Piece& b) { return a.distance + a.reach < b.distance + b.reach; };
   std::vector<Piece> heap{measured(from.corners(peak.triangle))};
@@ -193,12 +198,11 @@ DirectedDistance directed_distance(const spatial::Surface& from, const spatial::
       },
       join);
   const std::vector<std::uint32_t> triangle = triangle_of_vertices(from);
-  sums = join(std::move(sums), parallel_reduce(
-                                   from.positions.size(), kChunk, task, Sums{},
-                                   [&](std::size_t begin, std::size_t end) {
-                                     return measure_vertices(from, to, triangle, begin, end);
-                                   },
-                                   join));
+  sums = join(
+      std::move(sums),
+      parallel_reduce(
+          from.positions.size(), kChunk, task, Sums{},
+          [&](std::size_t begin, std::size_t end) { return measure_vertices(from, to, triangle, begin, end); }, join));
   DirectedDistance out;
   if (task.cancelled() || sums.peaks.list.empty()) return out;
   Peak peak = sums.peaks.list.front();

@@ -6,8 +6,8 @@ namespace lodestone::measure {
 /// A perspective view: `height_px` lines over a vertical field of view.
 struct View {
   double height_px = 1080;
-  double fov_degrees = 45;          ///< vertical
-  double aspect = 16.0 / 9.0;       ///< width over height
+  double fov_degrees = 45;     ///< vertical
+  double aspect = 16.0 / 9.0;  ///< width over height
 };
 
 /// A length `error` seen square-on at `distance` from the eye covers

@@ -9,7 +9,8 @@ namespace lodestone::simplify::detail {
 
 namespace {
 
-// Weight of a feature edge's line against the planes (area against area): 1 to 20 make no difference, 0 lets borders shrink.
+// Weight of a feature edge's line against the planes (area against area): 1 to 20 make no difference, 0 lets borders
+// shrink.
 constexpr float kLineWeight = 4.5F;
 
 // The edges around one vertex with their triangles (the first two, and how many).

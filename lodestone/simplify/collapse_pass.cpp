@@ -1,8 +1,8 @@
 // One pass: quadrics, costs, the cheapest edges in order, compaction.
 //
-// Each range of vertices sweeps the edges whose two rings lie in it, in parallel; then one sweep takes the edges that cross ranges.
-// The ranges' collapses do not meet, so they can be told in order of cost afterwards: any prefix of the record is a mesh from which
-// the cheapest edges are gone everywhere.
+// Each range of vertices sweeps the edges whose two rings lie in it, in parallel; then one sweep takes the edges that
+// cross ranges. The ranges' collapses do not meet, so they can be told in order of cost afterwards: any prefix of the
+// record is a mesh from which the cheapest edges are gone everywhere.
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -21,8 +21,8 @@ struct Range {
   std::uint32_t begin = 0, end = 0;
   std::vector<Candidate> candidates;
   Histogram histogram;
-  std::vector<std::uint32_t> order;    // candidates by cost, the range's own
-  std::vector<std::uint32_t> crossing; // candidates that reach into other ranges, by cost
+  std::vector<std::uint32_t> order;     // candidates by cost, the range's own
+  std::vector<std::uint32_t> crossing;  // candidates that reach into other ranges, by cost
   std::vector<Step> steps;
   std::vector<WedgeMerge> merges;
   std::uint32_t last_stamp = 0;

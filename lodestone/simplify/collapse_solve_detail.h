@@ -39,8 +39,9 @@ struct Shared {
   void add(Vec3f a, Vec3f b, Vec3f c);
 };
 
-/// Both free: the minimum of the joint quadric, pulled a little to the midpoint (1e-6), projected along the inverse to the plane
-/// that keeps the volume (Lindstrom & Turk 1998, section 4); the midpoint if that lies farther than two edges away.
+/// Both free: the minimum of the joint quadric, pulled a little to the midpoint (1e-6), projected along the inverse to
+/// the plane that keeps the volume (Lindstrom & Turk 1998, section 4); the midpoint if that lies farther than two edges
+/// away.
 Placement place_freely(const Quadric& v, const Quadric& w, const Shared& shared);
 
 /// `kept` stays where it is.

@@ -28,10 +28,10 @@ std::vector<std::uint32_t> find_dropped(const Mesh& mesh, const Task& task) {
     for (std::size_t t = begin; t < end; ++t) {
       Triangle v = mesh.vertices_of(t);
       std::sort(v.begin(), v.end());
-      keys[t] = v[0] == v[1] || v[1] == v[2] ? ~std::uint64_t{0}
-                                             : (std::uint64_t{v[0]} * 0x9e3779b97f4a7c15ULL) ^
-                                                   (std::uint64_t{v[1]} * 0xc2b2ae3d27d4eb4fULL) ^
-                                                   (std::uint64_t{v[2]} * 0x165667b19e3779f9ULL);
+      keys[t] = v[0] == v[1] || v[1] == v[2]
+                    ? ~std::uint64_t{0}
+                    : (std::uint64_t{v[0]} * 0x9e3779b97f4a7c15ULL) ^ (std::uint64_t{v[1]} * 0xc2b2ae3d27d4eb4fULL) ^
+                          (std::uint64_t{v[2]} * 0x165667b19e3779f9ULL);
     }
   });
   // A bit a hash bucket seen once, another seen twice: candidates are those in buckets seen twice.
@@ -58,9 +58,8 @@ std::vector<std::uint32_t> find_dropped(const Mesh& mesh, const Task& task) {
     std::rotate(v.begin(), std::min_element(v.begin(), v.end()), v.end());
     faces.push_back({v, static_cast<std::uint32_t>(t)});
   }
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-    return a.v != b.v ? a.v < b.v : a.triangle < b.triangle;
-  });
+  std::sort(faces.begin(), faces.end(),
+            [](const Face& a, const Face& b) { return a.v != b.v ? a.v < b.v : a.triangle < b.triangle; });
   for (std::size_t i = 1; i < faces.size(); ++i) {
     if (faces[i].v == faces[i - 1].v) dropped.push_back(faces[i].triangle);
   }

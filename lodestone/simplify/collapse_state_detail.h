@@ -23,8 +23,8 @@ enum class VertexClass : std::uint8_t {
 /// Why a vertex is fixed, for LockCounts.
 enum class LockCause : std::uint8_t { none, border, seam_corner, non_manifold, by_request };
 
-/// Sum over a vertex's triangles about the vertex itself, where all linear terms vanish (memoryless, Lindstrom & Turk 1998).
-/// Each triangle counts n n^T / |n| with n its cross product: squared distance times twice the area. 48 bytes.
+/// Sum over a vertex's triangles about the vertex itself, where all linear terms vanish (memoryless, Lindstrom & Turk
+/// 1998). Each triangle counts n n^T / |n| with n its cross product: squared distance times twice the area. 48 bytes.
 struct Quadric {
   float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
   Vec3f volume;    ///< sum of n: moving the vertex by d changes the volume by (volume . d) / 6
@@ -36,7 +36,7 @@ struct Step {
   std::uint32_t kept, removed;  ///< vertices of the input mesh
   Vec3f position;               ///< of `kept`, working frame; unused when !moved
   float cost;
-  float error;                  ///< root mean square distance to the planes around, working frame
+  float error;  ///< root mean square distance to the planes around, working frame
   std::uint32_t first_wedge, wedge_count;
   std::uint32_t faces;
   bool moved;
@@ -50,32 +50,33 @@ struct State {
   // The mesh as it is between passes; vertices keep a space-filling order so that neighbours are near in memory.
   std::vector<Vec3f> positions;
   std::vector<VertexClass> classes;
-  std::vector<std::uint32_t> original;   ///< vertex of the input mesh
-  std::vector<Triangle> triangles;       ///< vertices
-  std::vector<Triangle> wedges;          ///< wedges of the input mesh; empty when the run need not know them
-  std::vector<std::uint32_t> groups;     ///< face group of each triangle; empty when there is one
-  std::vector<std::uint32_t> dropped;    ///< input triangles that take no part
+  std::vector<std::uint32_t> original;  ///< vertex of the input mesh
+  std::vector<Triangle> triangles;      ///< vertices
+  std::vector<Triangle> wedges;         ///< wedges of the input mesh; empty when the run need not know them
+  std::vector<std::uint32_t> groups;    ///< face group of each triangle; empty when there is one
+  std::vector<std::uint32_t> dropped;   ///< input triangles that take no part
 
   // About the input's wedges; empty as above.
-  std::vector<std::uint32_t> chart;      ///< class of each wedge with normals and tangents left out: a change is a seam
-  std::vector<Vec3f> wedge_normals;      ///< of the input; empty when it has none
+  std::vector<std::uint32_t> chart;  ///< class of each wedge with normals and tangents left out: a change is a seam
+  std::vector<Vec3f> wedge_normals;  ///< of the input; empty when it has none
 
-  std::vector<LockCause> causes;         ///< one a vertex of the input
+  std::vector<LockCause> causes;  ///< one a vertex of the input
 
   // Rebuilt every pass.
   std::vector<std::uint32_t> star_first, star;  ///< triangles around each vertex
   std::vector<Quadric> quadrics;
-  std::vector<std::uint32_t> remap;      ///< vertex -> the one that it has merged into in this pass
-  std::vector<std::uint8_t> done;        ///< endpoint of a collapse of this pass
-  std::vector<std::uint8_t> touched;     ///< its star changed in this pass: quadric and costs are stale
-  std::vector<std::uint32_t> mark;       ///< scratch of the link condition
+  std::vector<std::uint32_t> remap;   ///< vertex -> the one that it has merged into in this pass
+  std::vector<std::uint8_t> done;     ///< endpoint of a collapse of this pass
+  std::vector<std::uint8_t> touched;  ///< its star changed in this pass: quadric and costs are stale
+  std::vector<std::uint32_t> mark;    ///< scratch of the link condition
 
   std::span<const std::uint32_t> star_of(std::uint32_t v) const {
     return std::span(star).subspan(star_first[v], star_first[v + 1] - star_first[v]);
   }
 };
 
-/// Vertices with more triangles than this sit out a pass (others may still collapse into their neighbours), which bounds time.
+/// Vertices with more triangles than this sit out a pass (others may still collapse into their neighbours), which
+/// bounds time.
 inline constexpr std::size_t kMaxValence = 512;
 
 /// Builds the working mesh: frame, order, classes. Errors: cancelled.
@@ -91,12 +92,12 @@ void build_stars(State& state, const Task& task);
 /// `triangles` are those with both a and b.
 bool is_feature_edge(const State& state, std::uint32_t a, std::uint32_t b, std::span<const std::uint32_t> triangles);
 
-/// Vertices of equal length ranges are swept apart: an edge whose two rings lie in one range meets no other range's work.
-/// The cut depends on the vertex count alone.
+/// Vertices of equal length ranges are swept apart: an edge whose two rings lie in one range meets no other range's
+/// work. The cut depends on the vertex count alone.
 std::size_t vertices_per_range(std::size_t vertices);
 
-/// Quadric of one vertex from its star as it is now (remap applied). Feature vertices get the lines of their feature edges too
-/// (only right while nothing in the star has merged).
+/// Quadric of one vertex from its star as it is now (remap applied). Feature vertices get the lines of their feature
+/// edges too (only right while nothing in the star has merged).
 Quadric quadric_of(const State& state, std::uint32_t v);
 
 /// An edge that may collapse, and how. 28 bytes.
@@ -106,7 +107,8 @@ struct Candidate {
   float cost, weight;  ///< see Placement
 };
 
-/// All candidates whose lower vertex lies in [begin, end), from quadrics up to date. Edges that can never collapse are left out.
+/// All candidates whose lower vertex lies in [begin, end), from quadrics up to date. Edges that can never collapse are
+/// left out.
 void collect_candidates(const State& state, std::uint32_t begin, std::uint32_t end, std::vector<Candidate>& out);
 
 /// Cost bin of a candidate: the exponent and three bits of the mantissa; bins rise with costs.
@@ -127,7 +129,7 @@ class Sweeper {
 
  private:
   struct Corner {
-    std::uint32_t a, b;      // the triangle is (self, a, b), remapped
+    std::uint32_t a, b;  // the triangle is (self, a, b), remapped
     std::uint32_t triangle;
   };
   void gather(std::uint32_t v, std::vector<Corner>& corners) const;
@@ -148,8 +150,8 @@ class Sweeper {
   std::vector<WedgeMerge> merges_;
 };
 
-/// One pass: costs of all edges, the cheapest `share` of them tried in order. Appends what was done to `steps` and `merges`
-/// and compacts the mesh. Returns the number of collapses.
+/// One pass: costs of all edges, the cheapest `share` of them tried in order. Appends what was done to `steps` and
+/// `merges` and compacts the mesh. Returns the number of collapses.
 std::size_t run_pass(State& state, double share, std::vector<Step>& steps, std::vector<WedgeMerge>& merges,
                      const Task& task);
 

@@ -47,8 +47,9 @@ bool Sweeper::refresh(Candidate& candidate) const {
   return true;
 }
 
-// Link condition (Dey et al. 1999): the vertices adjacent to both ends are just the third corners of the edge's triangles, and no
-// two triangles fall together; something must be left, so that no closed piece falls below four vertices, no open one below three.
+// Link condition (Dey et al. 1999): the vertices adjacent to both ends are just the third corners of the edge's
+// triangles, and no two triangles fall together; something must be left, so that no closed piece falls below four
+// vertices, no open one below three.
 bool Sweeper::link_allows(const Candidate& candidate) {
   const std::uint32_t stamp = stamp_;
   stamp_ += 3;
@@ -103,8 +104,7 @@ std::uint32_t Sweeper::nearest_normal(std::uint32_t wedge, std::uint32_t chart) 
   float best_cosine = -2;
   for (const std::uint32_t k : kept_wedges_) {
     if (state_.chart[k] != chart) continue;
-    const float cosine =
-        state_.wedge_normals.empty() ? 0 : dot(state_.wedge_normals[k], state_.wedge_normals[wedge]);
+    const float cosine = state_.wedge_normals.empty() ? 0 : dot(state_.wedge_normals[k], state_.wedge_normals[wedge]);
     if (cosine > best_cosine) {
       best = k;
       best_cosine = cosine;
@@ -113,8 +113,9 @@ std::uint32_t Sweeper::nearest_normal(std::uint32_t wedge, std::uint32_t chart) 
   return best;
 }
 
-// Finds for each wedge of the removed vertex the wedge of the kept one that takes over: across the edge's triangles where they say
-// it, else (normals split at the vertex, textures not) the one in the same chart whose normal is nearest. False = no match.
+// Finds for each wedge of the removed vertex the wedge of the kept one that takes over: across the edge's triangles
+// where they say it, else (normals split at the vertex, textures not) the one in the same chart whose normal is
+// nearest. False = no match.
 bool Sweeper::pair_wedges(const Candidate& candidate, bool moved) {
   const auto wedge_of = [&](std::uint32_t triangle, std::uint32_t vertex) {
     const Triangle& c = state_.triangles[triangle];
@@ -168,9 +169,8 @@ void Sweeper::commit(const Candidate& candidate, bool moved, std::size_t first_m
         merges_[first_merge + static_cast<std::size_t>(same - pairs_.begin())].blend = t;
         continue;
       }
-      const auto kin = std::find_if(pairs_.begin(), pairs_.end(), [&](const auto& p) {
-        return state_.chart[p.second] == state_.chart[wedge];
-      });
+      const auto kin = std::find_if(pairs_.begin(), pairs_.end(),
+                                    [&](const auto& p) { return state_.chart[p.second] == state_.chart[wedge]; });
       merges_.push_back({wedge, kin->first, t, false});
     }
   }

@@ -1,7 +1,7 @@
-// Method   greedy edge collapse in passes: memoryless quadrics, volume-preserving placement, the cheapest edges of a pass in order
-// Source   Lindstrom & Turk 1998 (placement and cost), Garland & Heckbert 1997 (quadrics), Dey et al. 1999 (link condition)
-// Cost     O(n log n) time: each pass is linear and removes a fixed share of what is left
-// Steps    working mesh -> { stars, quadrics, candidates, sort, sweep, compact } until a target -> record -> replay
+// Method   greedy edge collapse in passes: memoryless quadrics, volume-preserving placement, the cheapest edges of a
+// pass in order Source   Lindstrom & Turk 1998 (placement and cost), Garland & Heckbert 1997 (quadrics), Dey et al.
+// 1999 (link condition) Cost     O(n log n) time: each pass is linear and removes a fixed share of what is left Steps
+// working mesh -> { stars, quadrics, candidates, sort, sweep, compact } until a target -> record -> replay
 #include "lodestone/simplify/edge_collapse.h"
 
 #include <algorithm>
@@ -50,7 +50,8 @@ struct Run {
   std::vector<WedgeMerge> merges;
 };
 
-// Passes until the count or the error limit is passed, or nothing moves any more. The order of steps does not depend on either.
+// Passes until the count or the error limit is passed, or nothing moves any more. The order of steps does not depend on
+// either.
 Run run_passes(State& state, const EdgeCollapseOptions& options, const Task& task) {
   Run run;
   const double start = static_cast<double>(state.triangles.size());

@@ -16,10 +16,11 @@ namespace lodestone::simplify {
 
 struct EdgeCollapseOptions {
   std::size_t target_triangles = 0;  ///< stop at or below this count; 0 = no target
-  double max_error = std::numeric_limits<double>::infinity();  ///< stop before an estimated error above this, model units
-  bool keep_border = false;          ///< no vertex of an open border moves or vanishes
-  std::vector<std::uint8_t> locked;  ///< one a vertex, non-zero = stays; empty = none
-  bool record_log = false;           ///< fill EdgeCollapseResult::log
+  double max_error =
+      std::numeric_limits<double>::infinity();  ///< stop before an estimated error above this, model units
+  bool keep_border = false;                     ///< no vertex of an open border moves or vanishes
+  std::vector<std::uint8_t> locked;             ///< one a vertex, non-zero = stays; empty = none
+  bool record_log = false;                      ///< fill EdgeCollapseResult::log
 };
 
 enum class StopReason { reached_target, error_limit, no_legal_collapse };
@@ -28,8 +29,8 @@ const char* to_string(StopReason reason);
 
 /// Vertices left that could not move, by cause.
 struct LockCounts {
-  std::size_t border = 0;        ///< by keep_border
-  std::size_t seam_corner = 0;   ///< where seams, borders or materials meet or end
+  std::size_t border = 0;       ///< by keep_border
+  std::size_t seam_corner = 0;  ///< where seams, borders or materials meet or end
   std::size_t non_manifold = 0;
   std::size_t by_request = 0;
 };
@@ -40,13 +41,13 @@ struct EdgeCollapseResult {
   double estimated_error = 0;         ///< model units; the measured one comes from `measure`
   StopReason stop = StopReason::no_legal_collapse;
   LockCounts locked;
-  std::optional<CollapseLog> log;     ///< with record_log
+  std::optional<CollapseLog> log;  ///< with record_log
 };
 
-/// Collapses edges until a target holds. Lindstrom & Turk 1998 (memoryless, volume-preserving placement) in passes over flat
-/// arrays; see docs/papers/edge-collapse.md. Closed manifold input gives closed manifold output. Same bytes for any number of
-/// threads. Time O(n log n). Positions and errors in model units.
-/// Errors: bad_argument (neither target set, wrong size of `locked`), cancelled.
+/// Collapses edges until a target holds. Lindstrom & Turk 1998 (memoryless, volume-preserving placement) in passes over
+/// flat arrays; see docs/papers/edge-collapse.md. Closed manifold input gives closed manifold output. Same bytes for
+/// any number of threads. Time O(n log n). Positions and errors in model units. Errors: bad_argument (neither target
+/// set, wrong size of `locked`), cancelled.
 Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOptions& options = {}, Task task = {});
 
 }  // namespace lodestone::simplify

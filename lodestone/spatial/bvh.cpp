@@ -43,7 +43,8 @@ Bvh::Bvh(const Surface& surface, const Task& task) : surface_(surface), center_(
   const Vec3d half = surface.bounds.size() * 0.5;
   const double extent = std::max({half.x, half.y, half.z});
   scale_ = extent > 0 ? 1 / extent : 1;
-  // Rounding to float and subtracting in float can move a box's side by a few units of the largest coordinate's last place.
+  // Rounding to float and subtracting in float can move a box's side by a few units of the largest coordinate's last
+  // place.
   constexpr float margin = 0x1p-21F;
   const auto set = [](Node& node, std::size_t slot, const Box3f& box) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -103,8 +104,8 @@ Nearest Bvh::closest(Vec3d p, std::uint32_t hint) const {
   if (!(length_sq(local) < 1e24)) return test(p, 0);  // so far away that double can't tell one triangle from another
   const Vec3f q = to_float(local);
   const Float4 x{q.x, q.x, q.x, q.x}, y{q.y, q.y, q.y, q.y}, z{q.z, q.z, q.z, q.z};
-  // Squared float distances are off by a few 1e-7 of themselves; q's own rounding is in the margin while it is near, and
-  // relative to the distance when it is far.
+  // Squared float distances are off by a few 1e-7 of themselves; q's own rounding is in the margin while it is near,
+  // and relative to the distance when it is far.
   const double to_local = scale_ * scale_ * 1.000002;
   const auto limit = [&] { return static_cast<float>(std::min(best.distance_sq * to_local, 3e37)); };
   float worst = limit();
@@ -116,7 +117,8 @@ Nearest Bvh::closest(Vec3d p, std::uint32_t hint) const {
     if (visit.distance_sq > worst) continue;
     if (visit.level == 0) {
       const Nearest found = test(p, visit.index);
-      if (found.distance_sq < best.distance_sq || (found.distance_sq == best.distance_sq && found.triangle < best.triangle)) {
+      if (found.distance_sq < best.distance_sq ||
+          (found.distance_sq == best.distance_sq && found.triangle < best.triangle)) {
         best = found;
         worst = limit();
       }

@@ -17,15 +17,16 @@ struct Nearest {
   double distance_sq = std::numeric_limits<double>::infinity();
 };
 
-/// A packed tree: four children a node, the surface's Hilbert order cut into fours level by level, so nothing needs a pointer.
-/// Boxes are floats rounded outward, triangles are tested in double: the answer is exact in double precision.
+/// A packed tree: four children a node, the surface's Hilbert order cut into fours level by level, so nothing needs a
+/// pointer. Boxes are floats rounded outward, triangles are tested in double: the answer is exact in double precision.
 /// Build O(n), memory about 32 bytes a triangle. The surface must outlive the tree.
 class Bvh {
  public:
   explicit Bvh(const Surface& surface, const Task& task = {});
 
-  /// The closest point to p. `hint` is a triangle that is probably near (any, or kNone): a good one makes it several times
-  /// faster and never changes the distance. Of equally near triangles the lowest in surface order that the search meets.
+  /// The closest point to p. `hint` is a triangle that is probably near (any, or kNone): a good one makes it several
+  /// times faster and never changes the distance. Of equally near triangles the lowest in surface order that the search
+  /// meets.
   Nearest closest(Vec3d p, std::uint32_t hint = kNone) const;
 
   const Surface& surface() const { return surface_; }
@@ -38,9 +39,9 @@ class Bvh {
   Nearest test(Vec3d p, std::uint32_t triangle) const;
 
   const Surface& surface_;
-  Vec3d center_;                         // boxes are relative to it,
-  double scale_ = 1;                     // and scaled so that they lie in [-1, 1]: no overflow, no subnormal numbers
-  std::vector<Node> nodes_;              // level 0 (children are triangles) first, the root last
+  Vec3d center_;                            // boxes are relative to it,
+  double scale_ = 1;                        // and scaled so that they lie in [-1, 1]: no overflow, no subnormal numbers
+  std::vector<Node> nodes_;                 // level 0 (children are triangles) first, the root last
   std::vector<std::uint32_t> level_first_;  // first node of each level, and the end
 };
 

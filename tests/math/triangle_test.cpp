@@ -28,7 +28,8 @@ TEST(Triangle, closest_point_against_brute_force) {
   std::uint64_t k = 0;
   const auto next = [&] { return random_unit(5, k++) * 2 - 1; };
   for (int i = 0; i < 300; ++i) {
-    const Vec3d a{next(), next(), next()}, b{next(), next(), next()}, c{next(), next(), next()}, p{next(), next(), next()};
+    const Vec3d a{next(), next(), next()}, b{next(), next(), next()}, c{next(), next(), next()},
+        p{next(), next(), next()};
     const ClosestPoint found = closest_point(p, a, b, c);
     EXPECT_NEAR(length_sq(p - found.point), found.distance_sq, 1e-12);
     const double brute = brute_distance_sq(p, a, b, c);

@@ -25,8 +25,9 @@ void expect_exact(const Mesh& mesh, double spread) {
   const Vec3d center = surface->bounds.center();
   const double size = surface->bounds.diagonal() * spread;
   for (std::uint64_t i = 0; i < 200; ++i) {
-    const Vec3d p = center + Vec3d{random_unit(7, 3 * i) - 0.5, random_unit(7, 3 * i + 1) - 0.5,
-                                   random_unit(7, 3 * i + 2) - 0.5} * size;
+    const Vec3d p =
+        center +
+        Vec3d{random_unit(7, 3 * i) - 0.5, random_unit(7, 3 * i + 1) - 0.5, random_unit(7, 3 * i + 2) - 0.5} * size;
     const double brute = brute_distance_sq(*surface, p);
     EXPECT_EQ(tree.closest(p).distance_sq, brute);
     const auto hint = static_cast<std::uint32_t>(random_bits(8, i) % surface->triangles.size());

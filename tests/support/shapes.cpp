@@ -21,8 +21,18 @@ Mesh tetrahedron() {
 Mesh cube() {
   std::vector<Vec3f> p;
   for (int i = 0; i < 8; ++i) p.push_back({float(i & 1), float((i >> 1) & 1), float((i >> 2) & 1)});
-  return make_mesh(p, {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                       {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}});
+  return make_mesh(p, {{0, 2, 1},
+                       {1, 2, 3},
+                       {4, 5, 6},
+                       {5, 7, 6},
+                       {0, 1, 4},
+                       {1, 5, 4},
+                       {2, 6, 3},
+                       {3, 6, 7},
+                       {0, 4, 2},
+                       {2, 4, 6},
+                       {1, 3, 5},
+                       {3, 7, 5}});
 }
 
 Mesh cube_with_seams() {
@@ -138,9 +148,7 @@ Mesh moebius(int segments) {
   return mesh;
 }
 
-Mesh bow_tie() {
-  return make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 3, 4}});
-}
+Mesh bow_tie() { return make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}); }
 
 Mesh three_faces_on_an_edge() {
   return make_mesh({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}});
@@ -170,7 +178,11 @@ std::vector<Shape> small_shapes() {
       {"tetrahedron", tetrahedron, true},
       {"cube", cube, true},
       {"cube_with_seams", cube_with_seams, true},
-      {"one_triangle", [] { return make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}); }, false},
+      {"one_triangle",
+       [] {
+         return make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+       },
+       false},
       {"grid", [] { return grid(12, 0.1F); }, false},
       {"flat_grid", [] { return grid(12); }, false},
       {"grid_with_uv_seam", [] { return with_uv_seam(grid(12, 0.1F)); }, false},
@@ -229,7 +241,8 @@ Mesh with_uv_seam(Mesh mesh) {
     }
     out.triangles.push_back(wedges);
   }
-  // Away from x = 0.5 both sides would be equal only if they were the same chart; here each vertex is on one side or both.
+  // Away from x = 0.5 both sides would be equal only if they were the same chart; here each vertex is on one side or
+  // both.
   out.attributes = {uv};
   return out;
 }

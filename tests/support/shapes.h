@@ -13,16 +13,17 @@ namespace lodestone::test {
 Mesh make_mesh(std::vector<Vec3f> positions, std::vector<Triangle> triangles);
 
 Mesh tetrahedron();
-Mesh cube();                            ///< closed, 8 vertices, 12 triangles, [0,1]^3
-Mesh cube_with_seams();                 ///< 24 wedges with UVs and face normals on 8 vertices
-Mesh grid(int cells, float bend = 0);   ///< open unit square of cells x cells x 2 triangles; z = bend * sin(...)
-Mesh sphere(int rings);                 ///< closed UV sphere of radius 1, `rings` x 2 rings segments
-Mesh torus(int segments);               ///< closed, genus 1
-Mesh moebius(int segments);             ///< cannot be oriented
-Mesh bow_tie();                         ///< two fans that touch in one vertex
+Mesh cube();                           ///< closed, 8 vertices, 12 triangles, [0,1]^3
+Mesh cube_with_seams();                ///< 24 wedges with UVs and face normals on 8 vertices
+Mesh grid(int cells, float bend = 0);  ///< open unit square of cells x cells x 2 triangles; z = bend * sin(...)
+Mesh sphere(int rings);                ///< closed UV sphere of radius 1, `rings` x 2 rings segments
+Mesh torus(int segments);              ///< closed, genus 1
+Mesh moebius(int segments);            ///< cannot be oriented
+Mesh bow_tie();                        ///< two fans that touch in one vertex
 Mesh three_faces_on_an_edge();
-Mesh offset_plates(int cells);          ///< unit squares at z = 0 and z = 1e-3, opposite windings
-Mesh soup(unsigned seed, int vertices, int triangles);  ///< random triangles on few vertices: non-manifold, degenerate, doubled
+Mesh offset_plates(int cells);  ///< unit squares at z = 0 and z = 1e-3, opposite windings
+Mesh soup(unsigned seed, int vertices,
+          int triangles);  ///< random triangles on few vertices: non-manifold, degenerate, doubled
 
 struct Shape {
   std::string name;

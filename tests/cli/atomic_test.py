@@ -1,0 +1,75 @@
+"""Outputs appear whole or not at all, whatever stops the run."""
+import resource
+import signal
+import subprocess
+import time
+
+from support import LOD, Scratch
+
+
+class Atomic(Scratch):
+    statue_triangles = 40000
+
+    def limited(self, *words):
+        """Runs lod where no file may grow beyond 100 kB, as on a full disk."""
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))  # noqa: E731
+        return self.lod(*words, code=1, preexec_fn=limit)
+
+    def test_full_disk_leaves_nothing(self):
+        for output in ("x.glb", "x.gltf", "x.ply", "x.obj", "x.stl", "x.off"):
+            with self.subTest(output):
+                self.assert_error(self.limited("convert", "statue.ply", "-o", output), output[:2])
+                self.assertEqual(self.files(), ["statue.ply"])
+        self.assert_error(self.limited("build", "statue.ply", "-o", "x_LOD{level}.obj"), "x_LOD")
+        self.assertEqual(self.files(), ["statue.ply"])
+
+    def test_existing_file_is_unharmed_when_the_run_fails(self):
+        for output in ("x.glb", "x.obj"):
+            (self.folder / output).write_text("precious")
+            self.limited("convert", "statue.ply", "-o", output)
+            self.assertEqual((self.folder / output).read_text(), "precious")
+        (self.folder / "bad.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\n")
+        self.lod("build", "bad.ply", "-o", "x.glb", code=1)
+        self.assertEqual((self.folder / "x.glb").read_text(), "precious")
+
+    def test_existing_file_is_replaced_when_it_works(self):
+        (self.folder / "x.glb").write_text("old")
+        self.lod("build", "statue.ply", "-o", "x.glb", "--levels", "2")
+        self.assertTrue((self.folder / "x.glb").read_bytes().startswith(b"glTF"))
+        self.assertEqual(self.files(), ["statue.ply", "x.glb"])
+
+    def test_inputs_are_never_overwritten(self):
+        before = (self.folder / "statue.ply").read_bytes()
+        self.lod("convert", "statue.ply", "./statue.ply", code=2)
+        (self.folder / "link.ply").symlink_to("statue.ply")
+        self.lod("simplify", "link.ply", "-o", "statue.ply", "--triangles", "100", code=2)
+        (self.folder / "s_LOD1.ply").write_bytes(before)
+        self.lod("build", "s_LOD1.ply", "-o", "s_LOD{level}.ply", code=2)
+        self.assertEqual((self.folder / "statue.ply").read_bytes(), before)
+        self.assertEqual((self.folder / "s_LOD1.ply").read_bytes(), before)
+
+
+class Interrupt(Scratch):
+    statue_triangles = 600000
+
+    def stop(self, number, wait, *words):
+        process = subprocess.Popen([LOD, *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(wait)
+        self.assertIsNone(process.poll(), "ended before it could be stopped")
+        process.send_signal(number)
+        out, err = process.communicate(timeout=60)
+        return process.returncode, out, err
+
+    def test_stops_and_leaves_nothing(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            for wait in (0.05, 0.6):
+                with self.subTest((number, wait)):
+                    code, out, err = self.stop(number, wait, "build", "statue.ply", "-o", "x.glb", "--samples", "20000000")
+                    self.assertEqual((code, out), (130, ""), err)
+                    self.assertEqual(len(err.splitlines()), 1, err)
+                    self.assertEqual(self.files(), ["statue.ply"])
+
+    def test_folder_made_for_a_batch_goes_too(self):
+        code, _, _ = self.stop(signal.SIGINT, 0.4, "build", "statue.ply", "-o", "lods/", "--samples", "20000000")
+        self.assertEqual(code, 130)
+        self.assertEqual(self.files(), ["statue.ply"])

@@ -1,0 +1,194 @@
+"""Results: JSON fields that scripts rely on, the same bytes from any number of threads, samples, lengths."""
+import math
+
+from support import Scratch, run
+
+LEVEL = {"level", "triangles", "error", "relative_error", "error_kind", "switch_distance", "bytes", "file", "seconds",
+         "mean_error", "measured_error", "rms_error", "samples", "relative_mean_error"}
+
+
+class Json(Scratch):
+    def test_build(self):
+        report = self.json("build", "statue.ply", "-o", "a.glb")
+        self.assertEqual(set(report), {"input", "levels", "seconds", "peak_memory_bytes", "unit", "warnings", "shortfalls"})
+        self.assertEqual(set(report["input"]), {"path", "triangles", "diagonal"})
+        self.assertEqual(set(report["seconds"]), {"read", "levels", "measure", "write", "total"})
+        self.assertEqual([set(level) for level in report["levels"]], [LEVEL] * 5)
+        self.check_levels(report["levels"], report["input"]["diagonal"])
+
+    def check_levels(self, levels, diagonal):
+        self.assertEqual([level["level"] for level in levels], list(range(5)))
+        self.assertEqual((levels[0]["triangles"], levels[0]["error"]), (4000, 0))
+        for fine, coarse in zip(levels, levels[1:]):
+            self.assertLessEqual(coarse["triangles"], fine["triangles"] / 2 + 2)
+            self.assertGreaterEqual(coarse["error"], fine["error"])
+            self.assertGreaterEqual(coarse["error"], coarse["measured_error"])
+            self.assertAlmostEqual(coarse["relative_error"], coarse["error"] / diagonal, 12)
+            self.assertEqual(coarse["error_kind"], "measured")
+            # One pixel of 1,080 lines over 45 degrees.
+            distance = coarse["error"] * 1080 / (2 * math.tan(math.pi / 8))
+            self.assertAlmostEqual(coarse["switch_distance"] / distance, 1, 9)
+
+    def test_simplify(self):
+        report = self.json("simplify", "statue.ply", "-o", "a.ply", "--triangles", "500")
+        promised = {"triangles_in", "triangles", "error", "relative_error", "error_kind", "stop_reason", "seconds",
+                    "peak_memory_bytes"}
+        self.assertLessEqual(promised, set(report))
+        self.assertEqual(set(report["seconds"]), {"read", "simplify", "measure", "write"})
+        self.assertEqual((report["triangles_in"], report["stop_reason"]), (4000, "reached_target"))
+        self.assertLessEqual(report["triangles"], 500)
+        self.assertEqual(self.json("info", "a.ply")["triangles"], report["triangles"])
+
+    def test_measure(self):
+        self.lod("simplify", "statue.ply", "-o", "a.ply", "--triangles", "500")
+        report = self.json("measure", "statue.ply", "a.ply", "--samples", "50000", "--seed", "3")
+        promised = {"samples", "max", "mean", "rms", "relative_max", "relative_mean", "relative_rms", "forward", "backward",
+                    "normal_degrees", "seconds"}
+        self.assertLessEqual(promised, set(report))
+        for side in ("forward", "backward"):
+            self.assertLessEqual({"max", "mean", "rms"}, set(report[side]))
+        self.assertEqual(report["max"], max(report["forward"]["max"], report["backward"]["max"]))
+        self.assertAlmostEqual(report["mean"], (report["forward"]["mean"] + report["backward"]["mean"]) / 2, 12)
+        self.assertLess(0, report["mean"])
+        same = self.json("measure", "statue.ply", "statue.ply", "--samples", "1000")
+        self.assertLess(same["relative_max"], 1e-7)
+
+    def test_info(self):
+        report = self.json("info", "statue.ply")
+        promised = {"vertices", "wedges", "triangles", "components", "boundary_edges", "nonmanifold_edges", "duplicate_faces",
+                    "degenerate_triangles", "closed", "diagonal", "area", "volume", "bounds", "attributes", "materials",
+                    "file_vertices", "file_triangles", "nonmanifold_vertices", "meshes", "instances", "levels"}
+        self.assertLessEqual(promised, set(report))
+        self.assertEqual((report["vertices"], report["triangles"], report["closed"]), (2002, 4000, True))
+        self.assertGreater(report["volume"], 0)
+
+    def test_info_of_a_scene_counts_each_instance(self):
+        self.lod("sample", "tower", "-o", "t.glb")
+        scene = self.json("info", "t.glb")
+        self.assertEqual(scene["meshes"], 3)
+        self.assertGreater(scene["instances"], 300)
+        self.assertEqual(scene["unit"], "m")
+        self.assertEqual(scene["materials"], ["steel", "porcelain", "aluminium"])
+        self.lod("convert", "t.glb", "t.ply")
+        flat = self.json("info", "t.ply")
+        self.assertEqual(flat["triangles"], scene["triangles"])
+        self.assertAlmostEqual(flat["area"] / scene["area"], 1, 4)
+        self.assertAlmostEqual(flat["diagonal"] / scene["diagonal"], 1, 5)
+
+    def test_info_counts_levels(self):
+        self.lod("build", "statue.ply", "-o", "a.glb", "--levels", "4")
+        report = self.json("info", "a.glb")
+        self.assertEqual((report["levels"], report["triangles"], report["meshes"]), (4, 4000, 1))
+
+    def test_convert_and_sample(self):
+        self.assertLessEqual({"input", "files", "bytes", "seconds", "warnings"}, set(self.json("convert", "statue.ply", "a.obj")))
+        report = self.json("sample", "sphere", "-o", "s.ply", "--level", "2")
+        self.assertEqual((report["triangles"], report["vertices"], report["file"]), (320, 162, "s.ply"))
+
+
+class SameBytes(Scratch):
+    statue_triangles = 60000
+
+    def test_any_number_of_threads(self):
+        self.lod("sample", "tower", "-o", "tower.glb")
+        for verb in (("build", "statue.ply", "-o", "x.glb"), ("build", "statue.ply", "-o", "x.glb", "--error", "0.1%,1%"),
+                     ("build", "tower.glb", "-o", "x.glb"),
+                     ("simplify", "statue.ply", "-o", "x.glb", "--ratio", "3%"), ("convert", "statue.ply", "x.glb")):
+            with self.subTest(verb):
+                seen = set()
+                for threads in ("1", "2", "7"):
+                    self.assertIn(run(*verb, "--threads", threads, cwd=self.folder).returncode, (0, 3))
+                    seen.add((self.folder / "x.glb").read_bytes())
+                self.assertEqual(len(seen), 1)
+
+    def test_measure_says_the_same(self):
+        self.lod("simplify", "statue.ply", "-o", "a.ply", "--ratio", "10%")
+        figures = [self.json("measure", "statue.ply", "a.ply", "--samples", "30000", "--threads", n) for n in ("1", "2", "7")]
+        for one in figures:
+            del one["seconds"]
+        self.assertEqual(figures[0], figures[1])
+        self.assertEqual(figures[0], figures[2])
+
+
+class Samples(Scratch):
+    def info(self, *words):
+        self.lod("sample", *words, "-o", "s.ply")
+        return self.json("info", "s.ply")
+
+    def test_closed_at_any_count(self):
+        for name in ("statue", "sphere"):
+            for wanted in (1, 6, 8, 50, 999, 1000, 12346):
+                with self.subTest((name, wanted)):
+                    info = self.info(name, "--triangles", str(wanted))
+                    self.assertTrue(info["closed"] and info["manifold"])
+                    self.assertEqual(info["components"], 1)
+                    self.assertEqual(info["triangles"], max(6, wanted + wanted % 2))
+                    self.assertEqual(info["vertices"] * 2 - 4, info["triangles"], "genus 0")
+
+    def test_sphere_levels(self):
+        for level in range(4):
+            self.assertEqual(self.info("sphere", "--level", str(level))["triangles"], 20 * 4**level)
+
+    def test_terrain_is_open_and_has_texture_coordinates(self):
+        info = self.info("terrain", "--triangles", "2000")
+        self.assertFalse(info["closed"])
+        self.assertEqual((info["triangles"], info["components"]), (2000, 1))
+        self.lod("sample", "terrain", "--triangles", "2000", "-o", "s.glb")
+        self.assertEqual([a["semantic"] for a in self.json("info", "s.glb")["attributes"]], ["uv"])
+
+    def test_tower_comes_near_the_count(self):
+        for wanted in (20000, 50000, 300000):
+            self.lod("sample", "tower", "--triangles", str(wanted), "-o", "t.glb")
+            self.assertLess(abs(self.json("info", "t.glb")["triangles"] / wanted - 1), 0.01)
+
+    def test_seed_and_repetition(self):
+        def made(*words):
+            self.lod("sample", "statue", "--triangles", "500", "-o", "s.ply", *words)
+            return (self.folder / "s.ply").read_bytes()
+        self.assertEqual(made(), made("--seed", "1"))
+        self.assertNotEqual(made(), made("--seed", "2"))
+
+
+class Lengths(Scratch):
+    def simplified(self, *words, source="statue.ply", code=0):
+        return self.json("simplify", source, "-o", "x.glb", *words, code=code)
+
+    def test_relative_spellings_agree_and_hold(self):
+        a, b = self.simplified("--error", "0.5%"), self.simplified("--error", "0.005")
+        self.assertEqual(a["triangles"], b["triangles"])
+        self.assertLessEqual(a["relative_error"], 0.005)
+        self.assertGreater(a["relative_error"], 0.001)
+
+    def test_units(self):
+        self.lod("convert", "statue.ply", "s.glb")  # glTF is in metres
+        metres = self.simplified("--error", "3mm", source="s.glb")
+        self.assertLessEqual(metres["error"], 0.003)
+        self.assertEqual(metres["unit"], "m")
+        told = self.simplified("--error", "3mm", "--unit", "m")
+        self.assertEqual(told["triangles"], metres["triangles"])
+        bare = self.simplified("--error", "0.003", "--absolute")
+        self.assertEqual(bare["triangles"], metres["triangles"])
+        done = self.lod("simplify", "statue.ply", "-o", "y.glb", "--error", "3mm", code=2)
+        self.assert_error(done, "3mm", "--unit")
+        self.assertNotIn("y.glb", self.files())
+
+    def test_error_lists(self):
+        levels = self.json("build", "statue.ply", "-o", "x.glb", "--error", "0.2%,1%")["levels"]
+        self.assertEqual(len(levels), 3)
+        self.assertLessEqual(levels[1]["relative_error"], 0.002)
+        self.assertLessEqual(levels[2]["relative_error"], 0.01)
+
+    def test_pixels_at_distances(self):
+        levels = self.json("build", "statue.ply", "-o", "x.glb", "--pixels", "2", "--distances", "1,4", "--height", "720",
+                           "--fov", "60")["levels"]
+        self.assertEqual(len(levels), 3)
+        for level, distance in zip(levels[1:], (1, 4)):
+            allowed = 2 * 2 * distance * math.tan(math.radians(30)) / 720
+            self.assertLessEqual(level["error"], allowed)
+            self.assertGreater(level["error"], allowed / 4)
+
+    def test_counts_and_ratios(self):
+        levels = self.json("build", "statue.ply", "-o", "x.glb", "--triangles", "1000,200")["levels"]
+        self.assertEqual([level["triangles"] for level in levels], [4000, 1000, 200])
+        levels = self.json("build", "statue.ply", "-o", "x.glb", "--ratio", "25%,0.05")["levels"]
+        self.assertEqual([level["triangles"] for level in levels], [4000, 1000, 200])
