@@ -174,6 +174,13 @@ Result<BuildJobs> build_jobs(const Arguments& arguments) {
   Result<std::vector<fs::path>> inputs = list_inputs(arguments);
   if (!inputs) return fail(inputs.error());
   if (into_folder) all.folder = output;
+  for (const std::string& word : arguments.inputs) {
+    std::error_code ignored;
+    if (into_folder && is_folder(word) && fs::equivalent(word, output, ignored)) {
+      return fail(ErrorCode::bad_argument, "is the folder of the inputs, whose results would be inputs the next time",
+                  output, "name another folder for -o");
+    }
+  }
   const std::string pattern = into_folder ? (fs::path(output) / "{name}.glb").string() : output;
   const std::vector<std::string> names = output_names(*inputs);
   for (std::size_t i = 0; i < inputs->size(); ++i) {

@@ -88,8 +88,10 @@ void run_chunks(std::size_t chunks, ChunkFunction function, void* context, const
 
 ThreadLimit::~ThreadLimit() = default;
 
-std::uint64_t exclusive_scan(std::vector<std::uint32_t>& values, const Task& task) {
+std::uint64_t exclusive_scan(std::vector<std::uint32_t>& values, const Task& caller) {
   constexpr std::size_t kChunk = std::size_t{1} << 16;
+  // Not the caller's task: half a scan would be offsets that lead astray, and a whole one takes no time.
+  const Task task = Task::root({}, caller.threads());
   std::vector<std::uint64_t> start((values.size() + kChunk - 1) / kChunk);
   parallel_for(values.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     std::uint64_t sum = 0;

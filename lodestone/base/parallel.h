@@ -65,7 +65,8 @@ T parallel_reduce(std::size_t n, std::size_t chunk_size, const Task& task, T zer
   return sum;
 }
 
-/// Replaces values[i] by the sum of all before it and returns the total. O(n).
+/// Replaces values[i] by the sum of all before it and returns the total. O(n). Runs to its end even when the task is
+/// cancelled, so the offsets can always be trusted.
 std::uint64_t exclusive_scan(std::vector<std::uint32_t>& values, const Task& task = {});
 
 /// Stable sort by `less`, the same result for any thread count (chunks sorted apart, then merged pairwise). O(n log n).

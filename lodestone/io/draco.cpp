@@ -144,7 +144,7 @@ Result<DracoMesh> to_plain(const draco::Mesh& in, const std::string& where) {
   out.points = in.num_points();
   out.indices.reserve(std::size_t{in.num_faces()} * 3);
   for (std::uint32_t f = 0; f < in.num_faces(); ++f) {
-    for (const draco::PointIndex p : in.face(draco::FaceIndex(f))) {
+    for (const draco::PointIndex& p : in.face(draco::FaceIndex(f))) {
       if (p.value() >= out.points) {
         return fail(ErrorCode::bad_format, fmt::format("Draco face {} names point {}, there are {}", f, p.value(), out.points),
                     where);

@@ -90,14 +90,20 @@ class OffReader {
     return {};
   }
 
-  // How many numbers a vertex has, from the first one's line if that makes sense, and so how many are its colour.
-  void plan_columns(std::size_t on_first_line) {
+  // How many numbers a vertex has, from the first one's line if that makes sense, and so how many are its colour. The text
+  // stands at the first vertex again afterwards.
+  void plan_columns() {
+    const std::uint64_t first_bytes = text_.word().size();  // may be lines further down
+    const std::uint64_t begin = bytes_.position() - first_bytes;
+    std::size_t on_line = 1;
+    while (!text_.word_on_line().empty()) ++on_line;
+    bytes_.seek(begin);
     const std::size_t without_color = 3 + (has_normal_ ? 3U : 0U) + (has_uv_ ? 2U : 0U);
     const bool plain = !has_color_ && !has_normal_ && !has_uv_;
-    if (plain && (on_first_line == 6 || on_first_line == 7)) has_color_ = true;
-    if (has_color_) color_components_ = on_first_line == without_color + 3 ? 3 : 4;
+    if (plain && (on_line == 6 || on_line == 7) && vertices_ > 1) has_color_ = true;
+    if (has_color_) color_components_ = on_line == without_color + 3 ? 3 : 4;
     columns_ = without_color + color_components_;
-    extra_on_line_ = on_first_line > columns_;  // something we don't know follows
+    extra_on_line_ = on_line > columns_ && on_line % columns_ != 0;  // something we don't know follows
   }
 
   Result<void> read_vertices(ReadProgress& progress) {
@@ -105,19 +111,17 @@ class OffReader {
     std::vector<Vec3d> positions;
     std::vector<double> numbers;
     positions.reserve(count);
+    if (count > 0) plan_columns();
+    reserve_streams(count);
     for (std::size_t v = 0; v < count; ++v) {
       numbers.clear();
-      if (v == 0) {
-        if (Result<void> first = read_first_vertex(numbers); !first) return first;
-        reserve_streams(count);
-      }
       while (numbers.size() < columns_) {
         const std::string_view word = text_.word();
         double value = 0;
         if (!parse_number(word, value)) return bad_word(word, fmt::format("a number of vertex {} of {}", v, count));
         numbers.push_back(value);
       }
-      if (extra_on_line_ && v > 0) text_.skip_line();
+      if (extra_on_line_) text_.skip_line();
       positions.push_back({numbers[0], numbers[1], numbers[2]});
       const double* next = numbers.data() + 3;
       for (std::size_t i = 0; i < (has_normal_ ? 3U : 0U); ++i) normals_.push_back(static_cast<float>(*next++));
@@ -132,24 +136,6 @@ class OffReader {
     model_.file_vertices = count;
     set_positions(mesh_, positions);
     add_streams();
-    return {};
-  }
-
-  Result<void> read_first_vertex(std::vector<double>& numbers) {
-    std::string_view word = text_.word();  // may be lines further down
-    while (!word.empty() && numbers.size() < 64) {
-      double value = 0;
-      if (!parse_number(word, value)) return bad_word(word, "a number of vertex 0");
-      numbers.push_back(value);
-      word = text_.word_on_line();
-    }
-    const std::size_t on_line = numbers.size();
-    plan_columns(on_line);
-    // All in one line: the numbers behind the first vertex are the next one's, not extras of it.
-    if (extra_on_line_ && on_line >= 64) {
-      return fail(ErrorCode::unsupported, "has all vertices in one line", text_.place(), "write a line a vertex");
-    }
-    if (numbers.size() > columns_) numbers.resize(columns_);
     return {};
   }
 

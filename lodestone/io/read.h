@@ -12,17 +12,17 @@
 
 namespace lodestone::io {
 
-/// Reads a model by its extension (any case), checked against the content: PLY, OBJ, STL, OFF, glTF, GLB, DRC and, where
-/// built in, what assimp reads. Every mesh comes out validated, welded exactly and without unused vertices. Faces with more
-/// than three corners are triangulated; non-manifold, duplicate and degenerate faces stay.
-/// Errors: cannot_read, bad_format (with place), unsupported, empty (no triangle in the file), out_of_memory, cancelled.
+/// Reads a model by its extension (any case), checked against the content: PLY, OBJ, STL, OFF, glTF, GLB, DRC and,
+/// where built in, what assimp reads. Every mesh comes out validated, welded exactly and without unused vertices. Faces
+/// with more than three corners are triangulated; non-manifold, duplicate and degenerate faces stay. Errors:
+/// cannot_read, bad_format (with place), unsupported, empty (no triangle in the file), out_of_memory, cancelled.
 Result<Model> read_model(const std::filesystem::path& path, Task task = {});
 
 /// True if read_model knows the extension.
 bool is_model_extension(std::string_view extension);
 
-/// True if the format is read by a library that is not ours (assimp, Draco's bare files): commands read these in a child
-/// process with limits on time and memory.
+/// True if the format is read by a library that is not ours (assimp, Draco's bare files): commands read these in a
+/// child process with limits on time and memory.
 bool is_foreign_extension(std::string_view extension);
 
 /// Extensions with the dot, lower case, ours first: {".ply", ".obj", …}.

@@ -54,8 +54,13 @@ TEST(Parallel, scan_of_many_chunks) {
   std::vector<std::uint32_t> expected(values.size());
   std::exclusive_scan(values.begin(), values.end(), expected.begin(), 0U);
   const std::uint64_t total = std::accumulate(values.begin(), values.end(), std::uint64_t{0});
+  std::vector<std::uint32_t> again = values;
   EXPECT_EQ(exclusive_scan(values), total);
   EXPECT_EQ(values, expected);
+  const Task cancelled = Task::root({});
+  cancelled.cancel();
+  EXPECT_EQ(exclusive_scan(again, cancelled), total) << "offsets hold even when the task is cancelled";
+  EXPECT_EQ(again, expected);
 }
 
 TEST(Parallel, sort_is_stable) {
