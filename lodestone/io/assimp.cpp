@@ -22,14 +22,15 @@
 namespace lodestone::io {
 
 std::vector<std::string> assimp_extensions() {
-  return {".fbx", ".dae",  ".3ds", ".3mf", ".x",   ".lwo", ".ac",  ".b3d", ".blend",
+  return {".fbx",  ".dae", ".3ds", ".3mf", ".x",   ".lwo", ".ac",  ".b3d", ".blend",
           ".ms3d", ".cob", ".ase", ".dxf", ".ifc", ".x3d", ".q3o", ".smd"};
 }
 
 #ifndef LODESTONE_WITH_ASSIMP
 
 Result<Model> read_assimp(const std::filesystem::path& path, Task) {
-  return fail(ErrorCode::unsupported, fmt::format("this build cannot read '{}': it was made without assimp", path.extension().string()),
+  return fail(ErrorCode::unsupported,
+              fmt::format("this build cannot read '{}': it was made without assimp", path.extension().string()),
               path.string(), "install libassimp-dev and build with -DLODESTONE_WITH_ASSIMP=ON");
 }
 
@@ -49,8 +50,9 @@ class Cancel : public Assimp::ProgressHandler {
 
 Mat4d to_matrix(const aiMatrix4x4& a) {
   Mat4d out;
-  out.m = {double(a.a1), double(a.b1), double(a.c1), double(a.d1), double(a.a2), double(a.b2), double(a.c2), double(a.d2),
-           double(a.a3), double(a.b3), double(a.c3), double(a.d3), double(a.a4), double(a.b4), double(a.c4), double(a.d4)};
+  out.m = {double(a.a1), double(a.b1), double(a.c1), double(a.d1), double(a.a2), double(a.b2),
+           double(a.c2), double(a.d2), double(a.a3), double(a.b3), double(a.c3), double(a.d3),
+           double(a.a4), double(a.b4), double(a.c4), double(a.d4)};
   return out;
 }
 
@@ -118,7 +120,8 @@ class SceneReader {
     const auto* bytes = reinterpret_cast<const std::byte*>(embedded->pcData);
     out->encoded.assign(bytes, bytes + embedded->mWidth);
     out->mime = image_mime(out->encoded);
-    if (out->name.starts_with('*')) out->name = fmt::format("texture_{}{}", out->name.substr(1), image_extension(out->mime));
+    if (out->name.starts_with('*'))
+      out->name = fmt::format("texture_{}{}", out->name.substr(1), image_extension(out->mime));
     return out;
   }
 
@@ -188,30 +191,34 @@ class SceneReader {
         mesh.triangles.push_back({first + corner[0], first + corner[1], first + corner[2]});
         mesh.face_group.push_back(static_cast<std::uint32_t>(p));
       }
-      mesh.groups.push_back({from.mMaterialIndex < scene_.mNumMaterials ? from.mMaterialIndex : kNone, from.mName.C_Str()});
+      mesh.groups.push_back(
+          {from.mMaterialIndex < scene_.mNumMaterials ? from.mMaterialIndex : kNone, from.mName.C_Str()});
     }
     if (parts.size() == 1) mesh.face_group.clear();
     model_.file_vertices += vertices;
     model_.file_triangles += mesh.triangles.size();
-    add_stream(mesh, parts, "NORMAL", Semantic::normal, 0, 3, [](const aiMesh& m) { return m.HasNormals(); },
-               [](const aiMesh& m, unsigned v, float* to) { std::copy_n(&m.mNormals[v].x, 3, to); });
+    add_stream(
+        mesh, parts, "NORMAL", Semantic::normal, 0, 3, [](const aiMesh& m) { return m.HasNormals(); },
+        [](const aiMesh& m, unsigned v, float* to) { std::copy_n(&m.mNormals[v].x, 3, to); });
     for (unsigned set = 0; set < AI_MAX_NUMBER_OF_TEXTURECOORDS; ++set) {
-      add_stream(mesh, parts, fmt::format("TEXCOORD_{}", set), Semantic::uv, set, 2,
-                 [set](const aiMesh& m) { return m.HasTextureCoords(set); },
-                 [set](const aiMesh& m, unsigned v, float* to) { std::copy_n(&m.mTextureCoords[set][v].x, 2, to); });
+      add_stream(
+          mesh, parts, fmt::format("TEXCOORD_{}", set), Semantic::uv, set, 2,
+          [set](const aiMesh& m) { return m.HasTextureCoords(set); },
+          [set](const aiMesh& m, unsigned v, float* to) { std::copy_n(&m.mTextureCoords[set][v].x, 2, to); });
     }
     for (unsigned set = 0; set < AI_MAX_NUMBER_OF_COLOR_SETS; ++set) {
-      add_stream(mesh, parts, fmt::format("COLOR_{}", set), Semantic::color, set, 4,
-                 [set](const aiMesh& m) { return m.HasVertexColors(set); },
-                 [set](const aiMesh& m, unsigned v, float* to) { std::copy_n(&m.mColors[set][v].r, 4, to); });
+      add_stream(
+          mesh, parts, fmt::format("COLOR_{}", set), Semantic::color, set, 4,
+          [set](const aiMesh& m) { return m.HasVertexColors(set); },
+          [set](const aiMesh& m, unsigned v, float* to) { std::copy_n(&m.mColors[set][v].r, 4, to); });
     }
     return mesh;
   }
 
   // A stream of all parts if at least one has it.
   template <class Has, class Get>
-  void add_stream(Mesh& mesh, const std::vector<unsigned>& parts, std::string name, Semantic semantic, std::uint32_t set,
-                  std::uint32_t components, Has has, Get get) {
+  void add_stream(Mesh& mesh, const std::vector<unsigned>& parts, std::string name, Semantic semantic,
+                  std::uint32_t set, std::uint32_t components, Has has, Get get) {
     std::vector<std::uint8_t> present;
     for (const unsigned part : parts) present.push_back(has(*scene_.mMeshes[part]) ? 1 : 0);
     const auto count = std::count(present.begin(), present.end(), 1);
@@ -219,7 +226,7 @@ class SceneReader {
     AttributeStream stream =
         make_stream(std::move(name), semantic, components, ComponentType::float32, false, mesh.positions.size());
     stream.set = set;
-    float* to = std::get<std::vector<float>>(stream.values).data();
+    float* to = std::get<std::vector<float> >(stream.values).data();
     for (std::size_t p = 0; p < parts.size(); ++p) {
       const aiMesh& from = *scene_.mMeshes[parts[p]];
       for (unsigned v = 0; v < from.mNumVertices; ++v, to += components) {
@@ -246,7 +253,7 @@ class SceneReader {
   std::filesystem::path folder_;
   Model model_;
   std::map<std::vector<unsigned>, std::uint32_t> mesh_of_parts_;
-  std::map<std::string, std::shared_ptr<const Image>> images_;
+  std::map<std::string, std::shared_ptr<const Image> > images_;
 };
 
 Result<Model> read_scene(const std::filesystem::path& path, const Task& task) {
@@ -256,7 +263,8 @@ Result<Model> read_scene(const std::filesystem::path& path, const Task& task) {
   const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_SortByPType);
   if (task.cancelled()) return cancelled_error("reading");
   if (scene == nullptr) {
-    return fail(ErrorCode::bad_format, fmt::format("assimp cannot read it: {}", importer.GetErrorString()), path.string());
+    return fail(ErrorCode::bad_format, fmt::format("assimp cannot read it: {}", importer.GetErrorString()),
+                path.string());
   }
   return SceneReader(*scene, path).read();
 }

@@ -16,7 +16,10 @@ namespace {
 class OffReader {
  public:
   OffReader(ByteReader bytes, Task task)
-      : bytes_(std::move(bytes)), text_(bytes_, '#'), task_(std::move(task)), model_(make_model(Mesh{})),
+      : bytes_(std::move(bytes)),
+        text_(bytes_, '#'),
+        task_(std::move(task)),
+        model_(make_model(Mesh{})),
         mesh_(model_.meshes[0]) {}
 
   Result<Model> read() {
@@ -85,13 +88,14 @@ class OffReader {
       return count_too_large("face", faces_, kFaceBytes, bytes_.size(), text_.place());
     }
     if (vertices_ >= kNone) {
-      return fail(ErrorCode::unsupported, "more than 4,294,967,294 vertices", text_.place(), "cut the model into parts");
+      return fail(ErrorCode::unsupported, "more than 4,294,967,294 vertices", text_.place(),
+                  "cut the model into parts");
     }
     return {};
   }
 
-  // How many numbers a vertex has, from the first one's line if that makes sense, and so how many are its colour. The text
-  // stands at the first vertex again afterwards.
+  // How many numbers a vertex has, from the first one's line if that makes sense, and so how many are its colour. The
+  // text stands at the first vertex again afterwards.
   void plan_columns() {
     const std::uint64_t first_bytes = text_.word().size();  // may be lines further down
     const std::uint64_t begin = bytes_.position() - first_bytes;
@@ -175,7 +179,8 @@ class OffReader {
     for (std::uint64_t f = 0; f < faces_; ++f) {
       const std::string_view word = text_.word();
       std::int64_t count = 0;
-      if (!parse_integer(word, count)) return bad_word(word, fmt::format("the number of corners of face {} of {}", f, faces_));
+      if (!parse_integer(word, count))
+        return bad_word(word, fmt::format("the number of corners of face {} of {}", f, faces_));
       if (count < 0 || static_cast<std::uint64_t>(count) > bytes_.remaining() / 2 + 1) {
         return bad(fmt::format("face {} has {} corners, the file has {} left", f, count,
                                size_text(static_cast<double>(bytes_.remaining()))));
@@ -209,9 +214,11 @@ class OffReader {
     }
     model_.file_triangles = mesh_.triangles.size();
     if (short_faces > 0) {
-      model_.warnings.push_back(fmt::format("{} with fewer than 3 corners skipped", counted(short_faces, "face", "faces")));
+      model_.warnings.push_back(
+          fmt::format("{} with fewer than 3 corners skipped", counted(short_faces, "face", "faces")));
     }
-    if (colored > 0) model_.warnings.push_back(fmt::format("colours of {} were left out", counted(colored, "face", "faces")));
+    if (colored > 0)
+      model_.warnings.push_back(fmt::format("colours of {} were left out", counted(colored, "face", "faces")));
     return {};
   }
 

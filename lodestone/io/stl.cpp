@@ -42,7 +42,8 @@ class StlReader {
   }
 
  private:
-  // Binary if the count fits the size exactly, text if it begins with "solid" and looks like it, else binary if it can be.
+  // Binary if the count fits the size exactly, text if it begins with "solid" and looks like it, else binary if it can
+  // be.
   Result<bool> is_binary() {
     bytes_.ensure(static_cast<std::size_t>(std::min<std::uint64_t>(bytes_.size(), 1024)));
     const std::string_view head(bytes_.data(), std::min<std::size_t>(bytes_.available(), 1024));
@@ -51,13 +52,15 @@ class StlReader {
     const bool says_solid = trimmed(lower).starts_with("solid");
     if (head.size() >= kHeaderBytes) {
       std::memcpy(&count_, head.data() + 80, 4);
-      if (kHeaderBytes + count_ * kTriangleBytes == bytes_.size() && (count_ > 0 || !says_solid || has_zero)) return true;
+      if (kHeaderBytes + count_ * kTriangleBytes == bytes_.size() && (count_ > 0 || !says_solid || has_zero))
+        return true;
     }
     if (says_solid && !has_zero) return false;
     if (head.size() < kHeaderBytes) {
-      return fail(ErrorCode::bad_format,
-                  fmt::format("has {} bytes and does not begin with 'solid': a binary STL has at least 84", bytes_.size()),
-                  bytes_.name(), "is it cut off?");
+      return fail(
+          ErrorCode::bad_format,
+          fmt::format("has {} bytes and does not begin with 'solid': a binary STL has at least 84", bytes_.size()),
+          bytes_.name(), "is it cut off?");
     }
     return true;
   }
@@ -90,7 +93,8 @@ class StlReader {
     }
     model_.file_triangles = count_;
     if (bytes_.remaining() > 0) {
-      model_.warnings.push_back(fmt::format("{} behind the last triangle were left out", counted(bytes_.remaining(), "byte", "bytes")));
+      model_.warnings.push_back(
+          fmt::format("{} behind the last triangle were left out", counted(bytes_.remaining(), "byte", "bytes")));
     }
     if (has_attributes) model_.warnings.push_back("the attribute bytes of triangles (colours, perhaps) were left out");
     return {};
@@ -133,8 +137,8 @@ class StlReader {
         loop.push_back(to_double(p));
       } else if (float ignored = 0; word != "normal" && word != "outer" && word != "loop" && word != "endloop" &&
                                     !parse_number(word, ignored)) {
-        return fail(ErrorCode::bad_format, fmt::format("'{}' is not a keyword of STL", word.substr(0, 40)), text.place(),
-                    "is the file damaged?");
+        return fail(ErrorCode::bad_format, fmt::format("'{}' is not a keyword of STL", word.substr(0, 40)),
+                    text.place(), "is the file damaged?");
       }
       if (words % 8192 == 0 && !progress.go_on(bytes_.position())) return cancelled_error("reading");
     }
