@@ -196,4 +196,35 @@ Result<void> OutputFile::commit() {
   return {};
 }
 
+Result<StagingFolder> StagingFolder::create(const std::filesystem::path& output) {
+  StagingFolder staging;
+  const std::filesystem::path folder = output.has_parent_path() ? output.parent_path() : ".";
+  const std::filesystem::path path = folder / fmt::format(".{}.{}.tmp", output.filename().string(), ::getpid());
+  std::error_code error;
+  if (!std::filesystem::create_directory(path, error)) {
+    return fail(ErrorCode::cannot_write, error ? error.message() : path.string() + " is in the way", output.string(),
+                "does its folder exist, and may you write there?");
+  }
+  staging.path_ = path;
+  return staging;
+}
+
+StagingFolder::StagingFolder(StagingFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+
+StagingFolder::~StagingFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+}
+
+Result<void> StagingFolder::commit() {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(path_, error)) {
+    const std::filesystem::path to = path_.parent_path() / entry.path().filename();
+    std::filesystem::rename(entry.path(), to, error);
+    if (error) return fail(ErrorCode::cannot_write, error.message(), to.string());
+  }
+  if (error) return fail(ErrorCode::cannot_write, error.message(), path_.string());
+  return {};
+}
+
 }  // namespace lodestone

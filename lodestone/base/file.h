@@ -75,4 +75,23 @@ class OutputFile {
   std::string buffer_;
 };
 
+/// A hidden folder beside an output that consists of several files: what is written into it appears beside it on
+/// commit(), and is gone without.
+class StagingFolder {
+ public:
+  /// In the folder of `output`. Errors: cannot_write.
+  static Result<StagingFolder> create(const std::filesystem::path& output);
+  StagingFolder(StagingFolder&& other) noexcept;
+  StagingFolder& operator=(StagingFolder&&) = delete;
+  ~StagingFolder();
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Moves every file in it to its place, over older ones. Errors: cannot_write.
+  Result<void> commit();
+
+ private:
+  StagingFolder() = default;
+  std::filesystem::path path_;
+};
+
 }  // namespace lodestone

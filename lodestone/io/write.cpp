@@ -1,13 +1,12 @@
 #include "lodestone/io/write.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <system_error>
 #include <utility>
 
+#include "lodestone/base/file.h"
 #include "lodestone/io/gltf_write.h"
 #include "lodestone/io/obj_write.h"
 #include "lodestone/io/off_write.h"
@@ -45,62 +44,25 @@ Ladder as_ladder(const Model& model) {
   return ladder;
 }
 
-// A hidden folder beside the outputs, gone with everything in it when its life ends.
-class StagingFolder {
- public:
-  explicit StagingFolder(const std::filesystem::path& beside)
-      : path_((beside.has_parent_path() ? beside.parent_path() : std::filesystem::path(".")) /
-              fmt::format(".lodestone-{}", ::getpid())) {
-    std::filesystem::create_directory(path_, error_);
-  }
-  ~StagingFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  StagingFolder(const StagingFolder&) = delete;
-  StagingFolder& operator=(const StagingFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  const std::error_code& error() const { return error_; }
-
-  /// Moves every file in it beside the folder.
-  std::error_code release() const {
-    std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator(path_, error)) {
-      std::filesystem::rename(entry.path(), path_.parent_path() / entry.path().filename(), error);
-      if (error) return error;
-    }
-    return error;
-  }
-
- private:
-  std::filesystem::path path_;
-  std::error_code error_;
-};
-
 // All levels (each may be several files) are written into a staging folder first: all of them appear, or none.
 Result<WriteReport> write_level_files(const Ladder& ladder, const std::filesystem::path& pattern,
                                       const WriteOptions& options, const Task& task) {
-  const StagingFolder staging(pattern);
-  const auto cannot = [&](const std::error_code& error) {
-    return fail(ErrorCode::cannot_write, error.message(), pattern.string(),
-                "does its folder exist, and may you write there?");
-  };
-  if (staging.error()) return cannot(staging.error());
+  Result<StagingFolder> staging = StagingFolder::create(pattern);
+  if (!staging) return fail(staging.error());
   WriteReport all;
   const std::string name = pattern.filename().string();
   for (std::size_t level = 0; level < ladder.levels.size(); ++level) {
     std::string file = name;
     file.replace(name.find(kLevelMark), kLevelMark.size(), std::to_string(level));
     const Task part = task.part(1.0 / static_cast<double>(ladder.levels.size()));
-    Result<WriteReport> one = write_model(ladder.model(level), staging.path() / file, options, part);
+    Result<WriteReport> one = write_model(ladder.model(level), staging->path() / file, options, part);
     if (!one) return one;
     all.files.push_back(pattern.parent_path() / file);
     all.level_bytes.push_back(one->total_bytes);
     all.total_bytes += one->total_bytes;
     if (level == 0) all.warnings = std::move(one->warnings);
   }
-  if (const std::error_code error = staging.release(); error) return cannot(error);
+  if (const Result<void> ok = staging->commit(); !ok) return fail(ok.error());
   return all;
 }
 

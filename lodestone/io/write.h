@@ -28,17 +28,18 @@ struct WriteReport {
   std::vector<std::filesystem::path> files;  ///< file of each level (the same for all in one GLB)
   std::vector<std::uint64_t> level_bytes;    ///< bytes that each level takes: its share of a GLB, or its own file
   std::uint64_t total_bytes = 0;
-  std::vector<std::string> warnings;         ///< what the format could not hold, in plain words
+  std::vector<std::string> warnings;  ///< what the format could not hold, in plain words
 };
 
-/// Writes one model, by the path's extension: .ply (binary little-endian), .obj (+ .mtl), .stl (binary), .off, .glb, .gltf
+/// Writes one model, by the path's extension: .ply (binary little-endian), .obj (+ .mtl), .stl (binary), .off, .glb,
+/// .gltf
 /// (+ .bin). All or nothing: see base/file.h. Instances are flattened where the format has none.
 /// Errors: cannot_write, unsupported, cancelled.
 Result<WriteReport> write_model(const Model& model, const std::filesystem::path& path, const WriteOptions& options = {},
                                 Task task = {});
 
-/// Writes a ladder. "name.glb" or "name.gltf": all levels in one file with MSFT_lod, the coarsest level first in the binary
-/// chunk. "name_LOD{level}.ext": a file a level. Anything else is bad_argument with both spellings named.
+/// Writes a ladder. "name.glb" or "name.gltf": all levels in one file with MSFT_lod, the coarsest level first in the
+/// binary chunk. "name_LOD{level}.ext": a file a level. Anything else is bad_argument with both spellings named.
 Result<WriteReport> write_ladder(const Ladder& ladder, const std::filesystem::path& path,
                                  const WriteOptions& options = {}, Task task = {});
 
