@@ -18,12 +18,16 @@ std::uint32_t wedge_at(const State& state, std::uint32_t triangle, std::uint32_t
 // A vertex's triangles, cut along feature edges into fans.
 class Star {
  public:
-  Star(const State& state, std::uint32_t v) : state_(state), v_(v) {
-    const auto star = state.star_of(v);
+  explicit Star(const State& state) : state_(state) {}
+
+  void look_at(std::uint32_t v) {
+    v_ = v;
+    const auto star = state_.star_of(v);
     parent_.resize(star.size());
     std::iota(parent_.begin(), parent_.end(), 0U);
+    spokes_.clear();
     for (std::uint32_t i = 0; i < star.size(); ++i) {
-      for (const std::uint32_t u : state.triangles[star[i]]) {
+      for (const std::uint32_t u : state_.triangles[star[i]]) {
         if (u != v) spokes_.push_back({u, i});
       }
     }
@@ -41,7 +45,7 @@ class Star {
   Answer classify() {
     Answer answer;
     bool non_manifold = false;
-    std::vector<Spoke> feature_spokes;
+    feature_spokes_.clear();
     std::size_t features = 0;
     for (std::size_t i = 0, j = 0; i < spokes_.size(); i = j) {
       while (j < spokes_.size() && spokes_[j].neighbour == spokes_[i].neighbour) ++j;
@@ -49,8 +53,8 @@ class Star {
         answer.on_border = answer.on_border || j - i == 1;
         non_manifold = non_manifold || j - i > 2;
         ++features;
-        feature_spokes.insert(feature_spokes.end(), spokes_.begin() + static_cast<std::ptrdiff_t>(i),
-                              spokes_.begin() + static_cast<std::ptrdiff_t>(j));
+        feature_spokes_.insert(feature_spokes_.end(), spokes_.begin() + static_cast<std::ptrdiff_t>(i),
+                               spokes_.begin() + static_cast<std::ptrdiff_t>(j));
       } else {
         parent_[root(spokes_[i].triangle)] = root(spokes_[i + 1].triangle);
       }
@@ -58,7 +62,7 @@ class Star {
     std::size_t fans = 0;
     for (std::uint32_t t = 0; t < parent_.size(); ++t) fans += parent_[t] == t ? 1 : 0;
     if (features == 0 && fans <= 1) return answer;
-    if (features == 2 && every_fan_joins_both(feature_spokes, fans)) {
+    if (features == 2 && every_fan_joins_both(feature_spokes_, fans)) {
       answer.vertex_class = VertexClass::feature;
       return answer;
     }
@@ -97,9 +101,9 @@ class Star {
   }
 
   const State& state_;
-  std::uint32_t v_;
+  std::uint32_t v_ = 0;
   std::vector<std::uint32_t> parent_;
-  std::vector<Spoke> spokes_;
+  std::vector<Spoke> spokes_, feature_spokes_;
 };
 
 }  // namespace
@@ -122,8 +126,10 @@ void classify_vertices(State& state, const EdgeCollapseOptions& options, const T
   state.classes.assign(n, VertexClass::interior);
   state.causes.assign(n, LockCause::none);
   parallel_for(n, 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    Star star(state);  // its memory serves all vertices of the chunk
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
-      const Star::Answer answer = Star(state, v).classify();
+      star.look_at(v);
+      const Star::Answer answer = star.classify();
       LockCause cause = answer.cause;
       if (!options.locked.empty() && options.locked[state.original[v]] != 0) {
         cause = LockCause::by_request;

@@ -31,7 +31,6 @@ struct Range {
 void prepare(State& state, const Task& task) {
   build_stars(state, task);
   const std::size_t n = state.positions.size();
-  state.quadrics.resize(n);
   state.remap.resize(n);
   state.done.assign(n, 0);
   state.touched.assign(n, 0);
@@ -39,23 +38,7 @@ void prepare(State& state, const Task& task) {
   parallel_for(n, 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t v = begin; v < end; ++v) state.remap[v] = static_cast<std::uint32_t>(v);
   });
-  parallel_for(n, 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) state.quadrics[v] = quadric_of(state, v);
-  });
-}
-
-// 1 for vertices whose whole ring lies in [begin, end).
-std::vector<std::uint8_t> find_inner(const State& state, const std::vector<Range>& ranges, const Task& task) {
-  std::vector<std::uint8_t> inner(state.positions.size(), 1);
-  parallel_for(ranges.size(), 1, task, [&](std::size_t r, std::size_t, std::size_t) {
-    const Range& range = ranges[r];
-    for (std::uint32_t v = range.begin; v < range.end; ++v) {
-      for (const std::uint32_t t : state.star_of(v)) {
-        for (const std::uint32_t u : state.triangles[t]) inner[v] &= u >= range.begin && u < range.end ? 1 : 0;
-      }
-    }
-  });
-  return inner;
+  compute_quadrics(state, task);
 }
 
 // The bin that the cheapest `wanted` candidates end in.
@@ -220,7 +203,6 @@ std::size_t run_pass(State& state, double share, std::vector<Step>& steps, std::
     ranges[r].begin = static_cast<std::uint32_t>(r * size);
     ranges[r].end = static_cast<std::uint32_t>(std::min(n, (r + 1) * size));
   }
-  const std::vector<std::uint8_t> inner = find_inner(state, ranges, task);
   parallel_for(ranges.size(), 1, task, [&](std::size_t r, std::size_t, std::size_t) {
     Range& range = ranges[r];
     collect_candidates(state, range.begin, range.end, range.candidates);
@@ -239,7 +221,7 @@ std::size_t run_pass(State& state, double share, std::vector<Step>& steps, std::
     max_cost = std::bit_cast<float>(bits);
   }
   parallel_for(ranges.size(), 1, task, [&](std::size_t r, std::size_t, std::size_t) {
-    sort_candidates(ranges[r], inner, cutoff);
+    sort_candidates(ranges[r], state.inner, cutoff);
     sweep_range(state, ranges[r], max_cost);
   });
   if (task.cancelled()) return 0;

@@ -23,9 +23,16 @@ enum class VertexClass : std::uint8_t {
 /// Why a vertex is fixed, for LockCounts.
 enum class LockCause : std::uint8_t { none, border, seam_corner, non_manifold, by_request };
 
+/// Cross product of a triangle's sides and the inverse of its length (0 for a triangle without area).
+struct alignas(16) TriangleNormal {
+  Vec3f n;
+  float inverse_length = 0;
+};
+TriangleNormal triangle_normal(Vec3f a, Vec3f b, Vec3f c);
+
 /// Sum over a vertex's triangles about the vertex itself, where all linear terms vanish (memoryless, Lindstrom & Turk
 /// 1998). Each triangle counts n n^T / |n| with n its cross product: squared distance times twice the area. 48 bytes.
-struct Quadric {
+struct alignas(16) Quadric {
   float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
   Vec3f volume;    ///< sum of n: moving the vertex by d changes the volume by (volume . d) / 6
   Vec3f position;  ///< the vertex
@@ -64,7 +71,9 @@ struct State {
 
   // Rebuilt every pass.
   std::vector<std::uint32_t> star_first, star;  ///< triangles around each vertex
+  std::vector<TriangleNormal> normals;          ///< of the triangles at the pass's start, and a last one of zeros
   std::vector<Quadric> quadrics;
+  std::vector<std::uint8_t> inner;    ///< the vertex's whole ring lies in its range (see vertices_per_range)
   std::vector<std::uint32_t> remap;   ///< vertex -> the one that it has merged into in this pass
   std::vector<std::uint8_t> done;     ///< endpoint of a collapse of this pass
   std::vector<std::uint8_t> touched;  ///< its star changed in this pass: quadric and costs are stale
@@ -96,9 +105,12 @@ bool is_feature_edge(const State& state, std::uint32_t a, std::uint32_t b, std::
 /// work. The cut depends on the vertex count alone.
 std::size_t vertices_per_range(std::size_t vertices);
 
-/// Quadric of one vertex from its star as it is now (remap applied). Feature vertices get the lines of their feature
-/// edges too (only right while nothing in the star has merged).
-Quadric quadric_of(const State& state, std::uint32_t v);
+/// Quadrics of all vertices and `inner` at the start of a pass. Feature vertices get the lines of their feature edges,
+/// too.
+void compute_quadrics(State& state, const Task& task);
+
+/// Quadric of an interior vertex from its star as it is now, amid a pass.
+Quadric current_quadric(const State& state, std::uint32_t v);
 
 /// An edge that may collapse, and how. 28 bytes.
 struct Candidate {

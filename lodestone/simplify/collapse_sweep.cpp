@@ -29,17 +29,19 @@ bool Sweeper::refresh(Candidate& candidate) const {
   const std::uint32_t k = candidate.kept, r = candidate.removed;
   if (state_.touched[k] == 0 && state_.touched[r] == 0) return true;
   if (state_.classes[r] != VertexClass::interior) return false;  // lines of features are only known at the pass's start
+  const Quadric removed = state_.touched[r] != 0 ? current_quadric(state_, r) : state_.quadrics[r];
   Placement placement;
   if (state_.classes[k] == VertexClass::interior) {
-    const Quadric qk = state_.touched[k] != 0 ? quadric_of(state_, k) : state_.quadrics[k];
-    const Quadric qr = state_.touched[r] != 0 ? quadric_of(state_, r) : state_.quadrics[r];
-    Shared shared;
+    const Quadric kept = state_.touched[k] != 0 ? current_quadric(state_, k) : state_.quadrics[k];
+    TriangleNormal shared[2];
+    std::size_t count = 0;
     for (const Corner& c : removed_corners_) {
-      if (c.a == k || c.b == k) shared.add(state_.positions[r], state_.positions[c.a], state_.positions[c.b]);
+      if ((c.a != k && c.b != k) || count == 2) continue;
+      shared[count++] = triangle_normal(state_.positions[r], state_.positions[c.a], state_.positions[c.b]);
     }
-    placement = place_freely(qk, qr, shared);
+    placement = place_freely(kept, removed, shared, count);
   } else {
-    placement = place_at(state_.quadrics[k], state_.touched[r] != 0 ? quadric_of(state_, r) : state_.quadrics[r]);
+    placement = place_at(state_.quadrics[k], removed);
   }
   candidate.position = placement.position;
   candidate.cost = placement.cost;
