@@ -28,8 +28,10 @@ const char* to_string(StopReason reason) {
 
 namespace {
 
-// Share of the edges that a pass tries. A tenth to a third give the same quality; larger ones cost some.
-constexpr double kShare = 0.3;
+// Share of the edges that a pass tries. Mean error at 10 % of eight meshes, over CGAL Lindstrom-Turk's, and time of the
+// whole run: 0.03 0.99 1.33 s, 0.06 1.00 0.96 s, 0.1 1.01 0.80 s, 0.15 1.01 0.73 s, 0.3 1.03 0.62 s, 0.5 1.08 0.57 s,
+// 0.8 1.25 0.53 s.
+constexpr double kShare = 0.15;
 
 Result<void> check(const Mesh& mesh, const EdgeCollapseOptions& options) {
   const auto bad = [](const char* what, const char* remedy) {
