@@ -77,14 +77,15 @@ Result<ByteSpan> elements(const Document::Data& data, const Json& holder, std::u
   stride = use_stride && view.stride != 0 ? view.stride : size;
   if (stride < size) {
     return fail(ErrorCode::bad_format,
-                fmt::format("elements of {} bytes are in buffer view {} with byteStride {}", size, *view_index, stride), where);
+                fmt::format("elements of {} bytes are in buffer view {} with byteStride {}", size, *view_index, stride),
+                where);
   }
   const std::size_t there = view.bytes.size();
   const bool fits = *offset <= there && count <= there && (count - 1) * stride + size <= there - *offset;
   if (!fits) {
     return fail(ErrorCode::bad_format,
-                fmt::format("{} elements of {} bytes from byte {} on do not fit buffer view {} of {} bytes", count, size,
-                            *offset, *view_index, there),
+                fmt::format("{} elements of {} bytes from byte {} on do not fit buffer view {} of {} bytes", count,
+                            size, *offset, *view_index, there),
                 where, "is the file cut off?");
   }
   return view.bytes.subspan(static_cast<std::size_t>(*offset));
@@ -131,7 +132,8 @@ Result<void> apply_sparse(const Document::Data& data, const Json& sparse, std::u
   for (std::size_t i = 0; i < *replaced; ++i) {
     const std::uint32_t target = load_index(index_bytes->data() + i * index_stride, *type);
     if (target >= count) {
-      return fail(ErrorCode::bad_format, fmt::format("sparse index {} is {}, the accessor has {}", i, target, count), where);
+      return fail(ErrorCode::bad_format, fmt::format("sparse index {} is {}, the accessor has {}", i, target, count),
+                  where);
     }
     std::memcpy(dense.data() + target * size, value_bytes->data() + i * value_stride, size);
   }
@@ -226,7 +228,8 @@ Result<Accessor> find_accessor(const Document::Data& data, std::size_t index) {
       std::memcpy(dense->data() + i * size, out.data + i * out.stride, size);
     }
     if (sparse != nullptr) {
-      if (const auto good = apply_sparse(data, *sparse, *count, size, *dense, out.where); !good) return fail(good.error());
+      if (const auto good = apply_sparse(data, *sparse, *count, size, *dense, out.where); !good)
+        return fail(good.error());
     }
     out.data = dense->data();
     out.stride = size;

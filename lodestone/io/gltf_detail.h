@@ -58,9 +58,9 @@ Result<bool> numbers_member(const Json& object, std::string_view key, std::span<
 /// A buffer view, decoded when it was compressed.
 struct View {
   ByteSpan bytes;
-  std::size_t stride = 0;   ///< 0: tight
-  bool decoded = false;     ///< `bytes` were decoded from EXT_meshopt_compression
-  ByteSpan compressed;      ///< then: what the file held
+  std::size_t stride = 0;  ///< 0: tight
+  bool decoded = false;    ///< `bytes` were decoded from EXT_meshopt_compression
+  ByteSpan compressed;     ///< then: what the file held
 };
 
 struct ExternalImage {
@@ -70,16 +70,16 @@ struct ExternalImage {
 };
 
 struct Document::Data {
-  std::string name;  ///< of the file, for errors
-  std::filesystem::path path;  ///< empty when read from memory
-  Json json;         ///< as in the file, but data URIs of buffers removed
+  std::string name;                                         ///< of the file, for errors
+  std::filesystem::path path;                               ///< empty when read from memory
+  Json json;                                                ///< as in the file, but data URIs of buffers removed
   std::vector<std::shared_ptr<const std::string>> storage;  ///< owns all bytes
-  std::vector<ByteSpan> buffers;  ///< one a JSON buffer; empty for fallback buffers
-  std::vector<View> views;        ///< one a JSON bufferView
-  std::vector<ExternalImage> images;  ///< files found beside the .gltf
-  std::vector<std::size_t> instance_nodes;  ///< node of each instance of the Model
-  std::vector<std::uint64_t> fingerprints;  ///< of each Mesh as read: tells whether it was changed
-  std::uint64_t file_bytes = 0;   ///< all bytes read
+  std::vector<ByteSpan> buffers;                            ///< one a JSON buffer; empty for fallback buffers
+  std::vector<View> views;                                  ///< one a JSON bufferView
+  std::vector<ExternalImage> images;                        ///< files found beside the .gltf
+  std::vector<std::size_t> instance_nodes;                  ///< node of each instance of the Model
+  std::vector<std::uint64_t> fingerprints;                  ///< of each Mesh as read: tells whether it was changed
+  std::uint64_t file_bytes = 0;                             ///< all bytes read
 };
 
 /// Limits what a file may unfold to: shared or compressed parts can be named any number of times.

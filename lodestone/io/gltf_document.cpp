@@ -68,8 +68,9 @@ Result<void> check_asset(const Document::Data& data) {
   }
   const std::string least = string_member(*asset, "minVersion");
   if (version.substr(0, 2) != "2." || (!least.empty() && least != "2.0")) {
-    return fail(ErrorCode::unsupported, fmt::format("glTF version {}, only 2.0 is read", least.empty() ? version : least),
-                data.name, "export it again as glTF 2.0");
+    return fail(ErrorCode::unsupported,
+                fmt::format("glTF version {}, only 2.0 is read", least.empty() ? version : least), data.name,
+                "export it again as glTF 2.0");
   }
   return {};
 }
@@ -118,7 +119,8 @@ Result<ByteSpan> load_buffer(Loader& loader, std::size_t index, Json& buffer) {
     } else if (is_fallback(buffer)) {
       return bytes;
     } else {
-      return fail(ErrorCode::bad_format, "has no uri, and no binary chunk stands for it", where, "is the file cut off?");
+      return fail(ErrorCode::bad_format, "has no uri, and no binary chunk stands for it", where,
+                  "is the file cut off?");
     }
   } else if (is_data_uri(uri)) {
     Result<DataUri> decoded = decode_data_uri(uri, where);
@@ -131,8 +133,8 @@ Result<ByteSpan> load_buffer(Loader& loader, std::size_t index, Json& buffer) {
     bytes = *file;
   }
   if (*length > bytes.size()) {
-    return fail(ErrorCode::bad_format, fmt::format("byteLength is {}, but {} bytes are there", *length, bytes.size()), where,
-                "is the file cut off?");
+    return fail(ErrorCode::bad_format, fmt::format("byteLength is {}, but {} bytes are there", *length, bytes.size()),
+                where, "is the file cut off?");
   }
   return bytes.first(static_cast<std::size_t>(*length));
 }
@@ -181,9 +183,10 @@ Result<ByteSpan> buffer_range(const Loader& loader, const Json& range, const std
   if (!length) return fail(length.error());
   const ByteSpan bytes = buffers[*buffer];
   if (*offset > bytes.size() || *length > bytes.size() - *offset) {
-    return fail(ErrorCode::bad_format,
-                fmt::format("bytes {} to {} are named, buffer {} has {}", *offset, *offset + *length, *buffer, bytes.size()),
-                where, "is the file cut off?");
+    return fail(
+        ErrorCode::bad_format,
+        fmt::format("bytes {} to {} are named, buffer {} has {}", *offset, *offset + *length, *buffer, bytes.size()),
+        where, "is the file cut off?");
   }
   return bytes.subspan(static_cast<std::size_t>(*offset), static_cast<std::size_t>(*length));
 }
@@ -215,8 +218,8 @@ Result<View> decode_view(Loader& loader, const Json& meshopt, std::size_t stride
   } else if (!filter.empty() && filter != "NONE") {
     return fail(ErrorCode::bad_format, fmt::format("{} filter '{}' is unknown", kMeshopt, filter), where);
   }
-  Result<std::string> bytes = decode_meshopt(*range, static_cast<std::size_t>(*count), static_cast<std::size_t>(*size), m,
-                                             f, where);
+  Result<std::string> bytes =
+      decode_meshopt(*range, static_cast<std::size_t>(*count), static_cast<std::size_t>(*size), m, f, where);
   if (!bytes) return fail(bytes.error());
   if (!loader.unfolded.take(bytes->size())) {
     return fail(ErrorCode::bad_format, "the compressed views unfold to more than 64 times the file", where);

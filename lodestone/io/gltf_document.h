@@ -1,5 +1,5 @@
-// The glTF document behind a Model: everything that a .gltf or .glb holds, so that what we don't understand comes out as
-// it went in. Immutable; its content is known to io/gltf*.cpp alone (gltf_detail.h).
+// The glTF document behind a Model: everything that a .gltf or .glb holds, so that what we don't understand comes out
+// as it went in. Immutable; its content is known to io/gltf*.cpp alone (gltf_detail.h).
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,8 @@
 
 namespace lodestone::io {
 
-/// JSON, the bytes of all buffers and of the external images that the JSON names. Shared by all models made from one file.
+/// JSON, the bytes of all buffers and of the external images that the JSON names. Shared by all models made from one
+/// file.
 class Document {
  public:
   struct Data;

@@ -38,7 +38,8 @@ class Builder : public nlohmann::json_sax<Json> {
     Json::object_t& object = value.get_ref<Json::object_t&>();
     object.reserve(frame.keys.size());
     for (std::size_t i = 0; i < frame.keys.size(); ++i) {
-      static_cast<Json::object_t::Container&>(object).emplace_back(std::move(frame.keys[i]), std::move(frame.values[i]));
+      static_cast<Json::object_t::Container&>(object).emplace_back(std::move(frame.keys[i]),
+                                                                   std::move(frame.values[i]));
     }
     return add(std::move(value));
   }
@@ -52,7 +53,8 @@ class Builder : public nlohmann::json_sax<Json> {
   bool parse_error(std::size_t position, const std::string&, const Json::exception& problem) override {
     error_byte = position;
     error = problem.what();
-    // "[json.exception.parse_error.101] parse error at line 1, column 5: syntax error ...": the last part is for people.
+    // "[json.exception.parse_error.101] parse error at line 1, column 5: syntax error ...": the last part is for
+    // people.
     const std::size_t colon = error.find(": ");
     if (colon != std::string::npos) error.erase(0, colon + 2);
     return false;
@@ -154,8 +156,8 @@ Result<std::uint64_t> uint_member(const Json& object, std::string_view key, std:
   if (value == nullptr) return fallback;
   const std::optional<std::uint64_t> number = as_uint(*value);
   if (!number) {
-    return fail(ErrorCode::bad_format, fmt::format("{} is {}, not a whole number from 0 to 2^53", key, short_text(*value)),
-                where);
+    return fail(ErrorCode::bad_format,
+                fmt::format("{} is {}, not a whole number from 0 to 2^53", key, short_text(*value)), where);
   }
   return *number;
 }
@@ -166,16 +168,19 @@ Result<std::size_t> index_member(const Json& object, std::string_view key, std::
   if (value == nullptr) return fail(ErrorCode::bad_format, fmt::format("{} is missing", key), where);
   const std::optional<std::uint64_t> number = as_uint(*value);
   if (!number || *number >= limit) {
-    return fail(ErrorCode::bad_format, fmt::format("{} is {}, the file has {} {}", key, short_text(*value), limit, of), where);
+    return fail(ErrorCode::bad_format, fmt::format("{} is {}, the file has {} {}", key, short_text(*value), limit, of),
+                where);
   }
   return static_cast<std::size_t>(*number);
 }
 
-Result<bool> numbers_member(const Json& object, std::string_view key, std::span<double> into, const std::string& where) {
+Result<bool> numbers_member(const Json& object, std::string_view key, std::span<double> into,
+                            const std::string& where) {
   const Json* value = member(object, key);
   if (value == nullptr) return false;
   const auto wrong = [&] {
-    return fail(ErrorCode::bad_format, fmt::format("{} is {}, not {} numbers", key, short_text(*value), into.size()), where);
+    return fail(ErrorCode::bad_format, fmt::format("{} is {}, not {} numbers", key, short_text(*value), into.size()),
+                where);
   };
   if (!value->is_array() || value->size() != into.size()) return wrong();
   for (std::size_t i = 0; i < into.size(); ++i) {

@@ -60,7 +60,8 @@ std::vector<StreamSource> find_sources(const std::vector<PrimitiveSource>& primi
   return sources;
 }
 
-// The stream's type is the primitives' common one; where they differ, values are floats (writing back asks each primitive).
+// The stream's type is the primitives' common one; where they differ, values are floats (writing back asks each
+// primitive).
 AttributeStream empty_stream(const StreamSource& source, std::size_t wedges) {
   const AttributeKind kind = attribute_kind(source.name, source.morph);
   const Accessor* first = nullptr;
@@ -130,7 +131,8 @@ void append_triangles(Mesh& mesh, const PrimitiveSource& source, std::size_t gro
 }
 
 Result<std::vector<PrimitiveSource>> read_primitives(const Document::Data& data, std::size_t index, const Json& json,
-                                                     Budget& budget, DracoCache& cache, Model& model, const Task& task) {
+                                                     Budget& budget, DracoCache& cache, Model& model,
+                                                     const Task& task) {
   std::vector<PrimitiveSource> primitives;
   const Json& list = array_member(json, "primitives");
   for (std::size_t p = 0; p < list.size(); ++p) {
@@ -173,7 +175,8 @@ AttributeKind attribute_kind(std::string_view name, bool morph) {
 Result<Mesh> read_mesh(const Document::Data& data, std::size_t index, Budget& budget, DracoCache& cache, Model& model,
                        const Task& task) {
   const Json& json = array_member(data.json, "meshes")[index];
-  const Result<std::vector<PrimitiveSource>> primitives = read_primitives(data, index, json, budget, cache, model, task);
+  const Result<std::vector<PrimitiveSource>> primitives =
+      read_primitives(data, index, json, budget, cache, model, task);
   if (!primitives) return fail(primitives.error());
 
   Mesh mesh;

@@ -53,8 +53,9 @@ std::pair<std::size_t, std::size_t> components_allowed(const std::string& name, 
   }
 }
 
-Result<NamedAccessors> read_named(const Document::Data& data, const Json& attributes, bool morph, const std::string& where,
-                                  const std::vector<std::string>& skip, std::vector<std::string>& warnings) {
+Result<NamedAccessors> read_named(const Document::Data& data, const Json& attributes, bool morph,
+                                  const std::string& where, const std::vector<std::string>& skip,
+                                  std::vector<std::string>& warnings) {
   NamedAccessors out;
   if (!attributes.is_object()) return fail(ErrorCode::bad_format, "attributes are not an object", where);
   for (const auto& [name, index] : attributes.items()) {
@@ -71,15 +72,16 @@ Result<NamedAccessors> read_named(const Document::Data& data, const Json& attrib
         continue;
       }
       return fail(ErrorCode::bad_format,
-                  fmt::format("{} has {} components, it must have {}", name, accessor->components, least), accessor->where);
+                  fmt::format("{} has {} components, it must have {}", name, accessor->components, least),
+                  accessor->where);
     }
     out.emplace_back(name, std::move(*accessor));
   }
   return out;
 }
 
-Result<std::shared_ptr<const DracoMesh>> decode_view(const Document::Data& data, const Json& draco, const std::string& where,
-                                                     Budget& budget, DracoCache& cache) {
+Result<std::shared_ptr<const DracoMesh>> decode_view(const Document::Data& data, const Json& draco,
+                                                     const std::string& where, Budget& budget, DracoCache& cache) {
   const Result<std::size_t> view = index_member(draco, "bufferView", data.views.size(), "buffer views", where);
   if (!view) return fail(view.error());
   std::shared_ptr<const DracoMesh>& slot = cache.meshes[*view];
@@ -95,8 +97,8 @@ Result<std::shared_ptr<const DracoMesh>> decode_view(const Document::Data& data,
   return slot;
 }
 
-Result<Accessor> draco_accessor(const Document::Data& data, const DracoMesh& mesh, std::uint64_t id, const std::string& name,
-                                const Json& attributes, const std::string& where) {
+Result<Accessor> draco_accessor(const Document::Data& data, const DracoMesh& mesh, std::uint64_t id,
+                                const std::string& name, const Json& attributes, const std::string& where) {
   for (const DracoAttribute& attribute : mesh.attributes) {
     if (attribute.id != id) continue;
     Accessor out;
@@ -133,9 +135,11 @@ Result<NamedAccessors> read_draco_attributes(const Document::Data& data, const J
     if (!id) return fail(ErrorCode::bad_format, fmt::format("Draco attribute {} is not a number", name), where);
     Result<Accessor> accessor = draco_accessor(data, mesh, *id, name, *attributes, where);
     if (!accessor) return fail(accessor.error());
-    const auto [least, most] = name == "POSITION" ? std::pair<std::size_t, std::size_t>{3, 3} : components_allowed(name, false);
+    const auto [least, most] =
+        name == "POSITION" ? std::pair<std::size_t, std::size_t>{3, 3} : components_allowed(name, false);
     if (accessor->components < least || accessor->components > most) {
-      return fail(ErrorCode::bad_format, fmt::format("{} has {} components", name, accessor->components), accessor->where);
+      return fail(ErrorCode::bad_format, fmt::format("{} has {} components", name, accessor->components),
+                  accessor->where);
     }
     out.emplace_back(name, std::move(*accessor));
     done.push_back(name);
@@ -148,7 +152,8 @@ Result<std::vector<std::uint32_t>> read_indices(const Document::Data& data, cons
                                                 const std::string& where, Budget& budget) {
   std::vector<std::uint32_t> out;
   const auto absurd = [&] {
-    return fail(ErrorCode::bad_format, "the primitives share accessors so often that they unfold to an absurd size", where);
+    return fail(ErrorCode::bad_format, "the primitives share accessors so often that they unfold to an absurd size",
+                where);
   };
   if (member(primitive, "indices") == nullptr) {
     if (!budget.take(vertices)) return absurd();
@@ -167,21 +172,22 @@ Result<std::vector<std::uint32_t>> read_indices(const Document::Data& data, cons
   gather_bits(*accessor, {}, accessor->count, out.data(), 1, {});
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (out[i] >= vertices) {
-      return fail(ErrorCode::bad_format, fmt::format("index {} is {}, the primitive has {} vertices", i, out[i], vertices),
-                  accessor->where);
+      return fail(ErrorCode::bad_format,
+                  fmt::format("index {} is {}, the primitive has {} vertices", i, out[i], vertices), accessor->where);
     }
   }
   return out;
 }
 
-std::vector<Triangle> to_triangles(const std::vector<std::uint32_t>& indices, std::uint64_t mode, const std::string& where,
-                                   std::vector<std::string>& warnings) {
+std::vector<Triangle> to_triangles(const std::vector<std::uint32_t>& indices, std::uint64_t mode,
+                                   const std::string& where, std::vector<std::string>& warnings) {
   std::vector<Triangle> out;
   const std::size_t n = indices.size();
   if (mode == kTriangles) {
     out.resize(n / 3);
     if (n >= 3) std::memcpy(out.data(), indices.data(), out.size() * sizeof(Triangle));
-    if (n % 3 != 0) warnings.push_back(fmt::format("{}: {} corners are no multiple of 3; the last were left out", where, n));
+    if (n % 3 != 0)
+      warnings.push_back(fmt::format("{}: {} corners are no multiple of 3; the last were left out", where, n));
     return out;
   }
   out.reserve(n < 3 ? 0 : n - 2);
@@ -195,7 +201,8 @@ std::vector<Triangle> to_triangles(const std::vector<std::uint32_t>& indices, st
   return out;
 }
 
-// Renumbers the triangles to the vertices that they use. Costs the smaller of sorting the corners and marking all vertices.
+// Renumbers the triangles to the vertices that they use. Costs the smaller of sorting the corners and marking all
+// vertices.
 void compact(PrimitiveSource& source) {
   const std::size_t all = source.positions.count, corners = source.triangles.size() * 3;
   std::vector<std::uint32_t>& used = source.vertices;
@@ -233,8 +240,8 @@ Result<void> check_counts(const PrimitiveSource& source) {
   const auto check = [&](const NamedAccessors& list) -> Result<void> {
     for (const auto& [name, accessor] : list) {
       if (accessor.count != source.positions.count) {
-        return fail(ErrorCode::bad_format, fmt::format("{} has {} elements, POSITION has {}", name, accessor.count,
-                                                       source.positions.count),
+        return fail(ErrorCode::bad_format,
+                    fmt::format("{} has {} elements, POSITION has {}", name, accessor.count, source.positions.count),
                     accessor.where);
       }
     }

@@ -19,11 +19,11 @@ using NamedAccessors = std::vector<std::pair<std::string, Accessor>>;
 
 struct PrimitiveSource {
   Accessor positions;
-  NamedAccessors attributes;             ///< without POSITION, in the order of the file
-  std::vector<NamedAccessors> targets;   ///< morph targets
-  std::vector<Triangle> triangles;       ///< into `vertices`
-  std::vector<std::uint32_t> vertices;   ///< used elements of the accessors, ascending; empty = all in order
-  std::size_t vertex_count = 0;          ///< used
+  NamedAccessors attributes;            ///< without POSITION, in the order of the file
+  std::vector<NamedAccessors> targets;  ///< morph targets
+  std::vector<Triangle> triangles;      ///< into `vertices`
+  std::vector<std::uint32_t> vertices;  ///< used elements of the accessors, ascending; empty = all in order
+  std::size_t vertex_count = 0;         ///< used
   std::uint32_t material = kNone;
 };
 

@@ -12,17 +12,17 @@ namespace lodestone::io {
 
 /// Writes a ladder as "name.glb" (one file) or "name.gltf" + "name.bin"; a ladder of level 0 alone is a plain model.
 ///
-/// From a glTF document, what level 0 had comes out as it went in; its meshes' own accessors are kept unless the mesh was
-/// changed, was Draco-compressed, or compression is asked for. Coarser levels: each drawn node that carries a mesh gets
-/// `MSFT_lod` with coarser nodes outside the scene. A node with children, a transform animation, a camera, a light or a
-/// role as joint hands its mesh and skin to a new identity leaf that carries it. Weight animations are repeated for each
-/// level. The binary chunk holds the coarsest level first. A level whose mesh has no triangle left is a node without one.
-/// From no document: a fresh one with a node an instance.
+/// From a glTF document, what level 0 had comes out as it went in; its meshes' own accessors are kept unless the mesh
+/// was changed, was Draco-compressed, or compression is asked for. Coarser levels: each drawn node that carries a mesh
+/// gets `MSFT_lod` with coarser nodes outside the scene. A node with children, a transform animation, a camera, a light
+/// or a role as joint hands its mesh and skin to a new identity leaf that carries it. Weight animations are repeated
+/// for each level. The binary chunk holds the coarsest level first. A level whose mesh has no triangle left is a node
+/// without one. From no document: a fresh one with a node an instance.
 ///
 /// Compression is lossless here: meshopt without filters, Draco without quantization; so stored errors stay true.
 /// Errors: cannot_write (also: a GLB above 4 GiB), bad_argument (levels that don't fit the original), unsupported
 /// (compression not built in), cancelled.
-Result<WriteReport> write_gltf(const Ladder& ladder, const std::filesystem::path& path, const WriteOptions& options = {},
-                               Task task = {});
+Result<WriteReport> write_gltf(const Ladder& ladder, const std::filesystem::path& path,
+                               const WriteOptions& options = {}, Task task = {});
 
 }  // namespace lodestone::io

@@ -1,0 +1,120 @@
+#include "lodestone/io/gltf_read.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+#include <utility>
+
+#include "lodestone/base/file.h"
+#include "lodestone/base/random.h"
+#include "lodestone/core/validate.h"
+#include "lodestone/core/weld.h"
+#include "lodestone/io/gltf_detail.h"
+#include "lodestone/io/gltf_primitive_detail.h"
+
+namespace lodestone::io {
+
+namespace {
+
+constexpr std::string_view kKnownExtensions[] = {"KHR_mesh_quantization",
+                                                 "KHR_texture_transform",
+                                                 "KHR_materials_unlit",
+                                                 "KHR_lights_punctual",
+                                                 kDraco,
+                                                 kMeshopt,
+                                                 kInstancing,
+                                                 kMsftLod};
+
+// An extension that is required and may change the geometry in ways that we don't know must not be ignored silently.
+void warn_of_required(const Document::Data& data, std::vector<std::string>& warnings) {
+  for (const Json& name : array_member(data.json, "extensionsRequired")) {
+    if (!name.is_string()) continue;
+    const std::string text = name.get<std::string>();
+    const bool known =
+        std::find(std::begin(kKnownExtensions), std::end(kKnownExtensions), text) != std::end(kKnownExtensions);
+    const bool of_materials =
+        text.starts_with("KHR_materials_") || text.starts_with("KHR_texture_") || text.starts_with("EXT_texture_");
+    if (!known && !of_materials) {
+      warnings.push_back(fmt::format("{} is required by the file and not understood: kept as it is", text));
+    }
+  }
+}
+
+Result<void> read_meshes(const Document::Data& data, Model& model, const Task& task) {
+  const std::size_t count = array_member(data.json, "meshes").size();
+  Budget budget{data.file_bytes * 64 + 4096};
+  DracoCache cache;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Task part = task.part(1.0 / static_cast<double>(count));
+    Result<Mesh> mesh = read_mesh(data, i, budget, cache, model, part);
+    if (!mesh) return fail(mesh.error());
+    Result<Mesh> welded = weld_exact(std::move(*mesh), part);
+    if (!welded) return fail(welded.error());
+    if (const Result<void> ok = validate(*welded); !ok) {
+      return fail(ok.error().code, ok.error().what, place(data, "mesh", i), ok.error().remedy);
+    }
+    model.meshes.push_back(std::move(*welded));
+  }
+  return {};
+}
+
+Result<Model> read_document(std::string bytes, std::string name, const std::filesystem::path& path, const Task& task) {
+  Model model;
+  model.meters_per_unit = 1;
+  model.uv_origin_top = true;
+  Result<std::unique_ptr<Document::Data>> loaded =
+      load_document(std::move(bytes), std::move(name), path, model.warnings, task.part(0.3));
+  if (!loaded) return fail(loaded.error());
+  Document::Data& data = **loaded;
+  warn_of_required(data, model.warnings);
+  if (const Result<void> ok = read_meshes(data, model, task.part(0.7)); !ok) return fail(ok.error());
+  if (const Result<void> ok = read_scene(data, model); !ok) return fail(ok.error());
+  if (model.instances.empty()) {
+    return fail(ErrorCode::empty, "has no triangles: the scene draws no mesh", data.name, "is it the right file?");
+  }
+  model.materials = read_materials(data);
+  for (const Mesh& mesh : model.meshes) data.fingerprints.push_back(fingerprint(mesh));
+  model.document = std::make_shared<const Document>(std::move(*loaded));
+  return model;
+}
+
+}  // namespace
+
+std::uint64_t fingerprint(const Mesh& mesh) {
+  std::uint64_t hash = mix_bits(mesh.positions.size());
+  const auto add = [&](const void* data, std::size_t bytes) {
+    const auto* p = static_cast<const unsigned char*>(data);
+    std::uint64_t word = 0;
+    for (std::size_t i = 0; i < bytes; i += 8) {
+      word = 0;
+      std::memcpy(&word, p + i, std::min<std::size_t>(8, bytes - i));
+      hash = mix_bits(hash ^ word);
+    }
+  };
+  add(mesh.positions.data(), mesh.positions.size() * sizeof(Vec3f));
+  add(mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
+  add(mesh.wedge_vertex.data(), mesh.wedge_vertex.size() * 4);
+  add(mesh.face_group.data(), mesh.face_group.size() * 4);
+  for (const AttributeStream& stream : mesh.attributes) {
+    std::visit([&](const auto& values) { add(values.data(), values.size() * sizeof(values[0])); }, stream.values);
+  }
+  return hash;
+}
+
+Result<Model> read_gltf_bytes(std::string bytes, std::string name, Task task) {
+  try {
+    return read_document(std::move(bytes), name, {}, task);
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::out_of_memory, "needs more memory than there is", name);
+  }
+}
+
+Result<Model> read_gltf(const std::filesystem::path& path, Task task) {
+  Result<std::string> bytes = read_file(path);
+  if (!bytes) return fail(bytes.error());
+  return read_document(std::move(*bytes), path.string(), path, task);
+}
+
+}  // namespace lodestone::io
