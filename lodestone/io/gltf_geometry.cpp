@@ -92,7 +92,7 @@ std::vector<AttributePlan> plan_attributes(const Mesh& mesh, bool named, bool fl
     } else {
       plan = meaning_of(stream, i, uvs, colors);
     }
-    if (plan.name.empty() || !choose_type(stream, plan)) {
+    if (plan.name.empty() || stream.components > 4 || !choose_type(stream, plan)) {
       warn_once(warnings, fmt::format("attribute '{}' has values that glTF cannot hold: left out", stream.name));
       continue;
     }

@@ -1,0 +1,82 @@
+#include "lodestone/io/gltf_fresh_detail.h"
+
+#include <algorithm>
+#include <map>
+
+namespace lodestone::io {
+
+namespace {
+
+Json fresh_mesh(const Mesh& mesh) {
+  Json out = Json::object();
+  if (!mesh.name.empty()) out["name"] = mesh.name;
+  out["primitives"] = Json::array();
+  for (std::size_t g = 0; g < std::max<std::size_t>(1, mesh.groups.size()); ++g) {
+    Json primitive = Json::object();
+    if (g < mesh.groups.size() && mesh.groups[g].material != kNone) primitive["material"] = mesh.groups[g].material;
+    if (g < mesh.groups.size() && !mesh.groups[g].name.empty()) primitive["extras"] = {{"name", mesh.groups[g].name}};
+    out["primitives"].push_back(std::move(primitive));
+  }
+  return out;
+}
+
+Json fresh_node(const Instance& instance, const Mesh& mesh) {
+  Json out = Json::object();
+  const std::string& name = instance.name.empty() ? mesh.name : instance.name;
+  if (!name.empty()) out["name"] = name;
+  out["mesh"] = instance.mesh;
+  const Mat4d all = instance.transform * Mat4d::translation(mesh.offset);
+  if (all.is_identity()) return out;
+  Mat4d linear = all;
+  linear.m[12] = linear.m[13] = linear.m[14] = 0;
+  if (linear.is_identity()) {
+    out["translation"] = {all.m[12], all.m[13], all.m[14]};
+  } else {
+    out["matrix"] = all.m;
+  }
+  return out;
+}
+
+}  // namespace
+
+Json make_fresh_document(const Model& model) {
+  Json json = {{"asset", {{"version", "2.0"}, {"generator", "Lodestone"}}}, {"scene", 0}};
+  Json roots = Json::array();
+  json["nodes"] = Json::array();
+  for (std::size_t i = 0; i < model.instances.size(); ++i) {
+    json["nodes"].push_back(fresh_node(model.instances[i], model.meshes[model.instances[i].mesh]));
+    roots.push_back(i);
+  }
+  json["scenes"] = Json::array({{{"nodes", std::move(roots)}}});
+  json["meshes"] = Json::array();
+  for (const Mesh& mesh : model.meshes) json["meshes"].push_back(fresh_mesh(mesh));
+  return json;
+}
+
+void add_fresh_materials(const Model& model, Json& json, GltfPack& pack) {
+  std::map<const Image*, std::size_t> textures;
+  for (const Material& material : model.materials) {
+    Json out = Json::object();
+    if (!material.name.empty()) out["name"] = material.name;
+    Json pbr = {{"baseColorFactor", material.base_color},
+                {"metallicFactor", material.metallic},
+                {"roughnessFactor", material.roughness}};
+    const Image* image = material.base_color_texture.get();
+    if (image != nullptr && !image->encoded.empty() && (image->mime == "image/png" || image->mime == "image/jpeg")) {
+      const auto [known, is_new] = textures.emplace(image, textures.size());
+      if (is_new) {
+        const std::string_view bytes(reinterpret_cast<const char*>(image->encoded.data()), image->encoded.size());
+        json["images"].push_back({{"bufferView", pack.add_bytes(0, bytes)}, {"mimeType", image->mime}});
+        if (!image->name.empty()) json["images"].back()["name"] = image->name;
+        json["textures"].push_back({{"source", known->second}});
+      }
+      pbr["baseColorTexture"] = {{"index", known->second}};
+    }
+    out["pbrMetallicRoughness"] = std::move(pbr);
+    if (material.double_sided) out["doubleSided"] = true;
+    if (material.base_color[3] < 1) out["alphaMode"] = "BLEND";
+    json["materials"].push_back(std::move(out));
+  }
+}
+
+}  // namespace lodestone::io

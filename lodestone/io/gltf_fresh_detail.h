@@ -1,0 +1,15 @@
+// A glTF document for a model that came from another format.
+#pragma once
+
+#include <vector>
+
+#include "lodestone/io/gltf_pack_detail.h"
+
+namespace lodestone::io {
+
+/// Scene, a node an instance (its index is the instance's), meshes whose primitives still lack geometry (one a face
+/// group, so that primitive g is group g), and materials with their textures in the pack.
+Json make_fresh_document(const Model& model);
+void add_fresh_materials(const Model& model, Json& json, GltfPack& pack);
+
+}  // namespace lodestone::io

@@ -1,0 +1,140 @@
+#include "lodestone/io/gltf_lod_detail.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace lodestone::io {
+
+namespace {
+
+constexpr const char* kTransforms[] = {"matrix", "translation", "rotation", "scale"};
+
+struct NodeRole {
+  bool transform_animated = false, joint = false;
+};
+
+template <class Use>
+void each_channel(Json& json, Use use) {
+  if (!json.contains("animations") || !json["animations"].is_array()) return;
+  for (Json& animation : json["animations"]) {
+    if (!animation.is_object() || !animation.contains("channels") || !animation["channels"].is_array()) continue;
+    use(animation["channels"]);
+  }
+}
+
+bool targets(const Json& channel, std::size_t node, bool weights) {
+  const Json* target = member(channel, "target");
+  if (target == nullptr) return false;
+  const Json* index = member(*target, "node");
+  if (index == nullptr || as_uint(*index).value_or(node + 1) != node) return false;
+  return (string_member(*target, "path") == "weights") == weights;
+}
+
+NodeRole role_of(Json& json, std::size_t node) {
+  NodeRole role;
+  each_channel(json, [&](const Json& channels) {
+    for (const Json& c : channels) role.transform_animated = role.transform_animated || targets(c, node, false);
+  });
+  for (const Json& skin : array_member(json, "skins")) {
+    for (const Json& joint : array_member(skin, "joints")) {
+      role.joint = role.joint || as_uint(joint).value_or(node + 1) == node;
+    }
+  }
+  return role;
+}
+
+// Weight channels follow the mesh to `holder` and are repeated for the levels that still morph.
+void move_weight_channels(Json& json, std::size_t from, std::size_t holder, const std::vector<std::size_t>& levels) {
+  each_channel(json, [&](Json& channels) {
+    const std::size_t count = channels.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!targets(channels[i], from, true)) continue;
+      channels[i]["target"]["node"] = holder;
+      for (const std::size_t level : levels) {
+        const Json& node = json["nodes"][level];
+        const Json* mesh = member(node, "mesh");
+        if (mesh == nullptr) continue;
+        const Json& primitives = json["meshes"][mesh->get<std::size_t>()]["primitives"];
+        if (primitives.empty() || !primitives[0].contains("targets")) continue;
+        Json copy = channels[i];
+        copy["target"]["node"] = level;
+        channels.push_back(std::move(copy));
+      }
+    }
+  });
+}
+
+// The node that shall carry the levels: itself, or a new leaf that takes over mesh, skin and weights.
+std::size_t choose_holder(Json& json, std::size_t node) {
+  const NodeRole role = role_of(json, node);
+  const Json& carrier = json["nodes"][node];
+  const Json* extensions = member(carrier, "extensions");
+  const bool light = extensions != nullptr && extensions->contains("KHR_lights_punctual");
+  const bool busy = !array_member(carrier, "children").empty() || carrier.contains("camera") || light;
+  if (!busy && !role.transform_animated && !role.joint) return node;
+  Json leaf = Json::object();
+  const std::string name = string_member(carrier, "name");
+  if (!name.empty()) leaf["name"] = name + "_mesh";
+  Json& old = json["nodes"][node];
+  for (const char* key : {"mesh", "skin", "weights"}) {
+    if (!old.contains(key)) continue;
+    leaf[key] = old[key];
+    old.erase(key);
+  }
+  if (old.contains("extensions") && old["extensions"].contains(kInstancing)) {
+    leaf["extensions"][kInstancing] = old["extensions"][kInstancing];
+    old["extensions"].erase(kInstancing);
+    if (old["extensions"].empty()) old.erase("extensions");
+  }
+  const std::size_t index = json["nodes"].size();
+  old["children"].push_back(index);
+  json["nodes"].push_back(std::move(leaf));
+  return index;
+}
+
+Json level_node(const Json& holder, std::size_t mesh, std::size_t level, const Json& meshes) {
+  Json out = Json::object();
+  const std::string name = string_member(holder, "name");
+  if (!name.empty()) out["name"] = fmt::format("{}_LOD{}", name, level);
+  for (const char* key : kTransforms) {
+    if (holder.contains(key)) out[key] = holder[key];
+  }
+  if (mesh == kNone) return out;
+  out["mesh"] = mesh;
+  if (holder.contains("skin")) out["skin"] = holder["skin"];
+  const Json& primitives = meshes[mesh]["primitives"];
+  if (holder.contains("weights") && !primitives.empty() && primitives[0].contains("targets")) {
+    out["weights"] = holder["weights"];
+  }
+  const Json* extensions = member(holder, "extensions");
+  if (extensions != nullptr && extensions->contains(kInstancing)) {
+    out["extensions"][kInstancing] = (*extensions)[kInstancing];
+  }
+  return out;
+}
+
+}  // namespace
+
+void add_node_levels(Json& json, std::size_t node, const std::vector<std::size_t>& level_meshes,
+                     const std::vector<double>& coverage, std::vector<std::string>& warnings) {
+  const std::size_t holder = choose_holder(json, node);
+  std::vector<std::size_t> ids;
+  for (std::size_t k = 0; k < level_meshes.size(); ++k) {
+    Json coarser = level_node(json["nodes"][holder], level_meshes[k], k + 1, json["meshes"]);
+    ids.push_back(json["nodes"].size());
+    json["nodes"].push_back(std::move(coarser));
+  }
+  Json& carrier = json["nodes"][holder];
+  carrier["extensions"][kMsftLod] = {{"ids", ids}};
+  if (!coverage.empty()) {
+    if (!carrier.contains("extras") || carrier["extras"].is_object()) {
+      carrier["extras"][kCoverage] = coverage;
+    } else {
+      warnings.push_back(fmt::format("node {} has extras that are no object: its screen coverage was left out", node));
+    }
+  }
+  move_weight_channels(json, node, holder, ids);
+}
+
+}  // namespace lodestone::io

@@ -1,0 +1,17 @@
+// MSFT_lod: coarser nodes beside the nodes of the scene.
+#pragma once
+
+#include <vector>
+
+#include "lodestone/io/gltf_detail.h"
+
+namespace lodestone::io {
+
+/// Gives node `node`, which carries a mesh, its coarser levels. level_meshes[k] is the JSON mesh of level k + 1, kNone
+/// where nothing is left of it. A node that has children, is animated, is a joint, or carries a camera or a light hands
+/// its mesh and skin to a new identity leaf; weight animations follow the mesh and are repeated for each level.
+/// `coverage`: MSFT_screencoverage, one value a level with level 0; empty = none.
+void add_node_levels(Json& json, std::size_t node, const std::vector<std::size_t>& level_meshes,
+                     const std::vector<double>& coverage, std::vector<std::string>& warnings);
+
+}  // namespace lodestone::io

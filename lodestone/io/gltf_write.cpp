@@ -1,0 +1,301 @@
+// From a ladder to a glTF file. The original's document is copied and only added to; what it cannot keep (compressed
+// geometry that is to come out plain, other files) is replaced in place, so that every index in it still means the
+// same.
+#include "lodestone/io/gltf_write.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <new>
+#include <optional>
+
+#include "lodestone/base/file.h"
+#include "lodestone/base/units.h"
+#include "lodestone/io/draco_detail.h"
+#include "lodestone/io/gltf_document.h"
+#include "lodestone/io/gltf_fresh_detail.h"
+#include "lodestone/io/gltf_geometry_detail.h"
+#include "lodestone/io/gltf_lod_detail.h"
+#include "lodestone/io/meshopt_detail.h"
+#include "lodestone/io/uri_detail.h"
+
+namespace lodestone::io {
+
+namespace {
+
+std::string_view as_text(ByteSpan bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+
+// All that writing one file needs.
+struct Writer {
+  const Ladder& ladder;
+  const WriteOptions& options;
+  const Document::Data* document;  // null: from another format
+  Json json;
+  std::optional<GltfPack> pack;
+  WriteReport report;
+  std::vector<std::size_t> instance_nodes;
+  std::vector<Json> source_meshes;  // as the document had them
+};
+
+Result<void> check(const Ladder& ladder, const std::filesystem::path& path, Compression compression) {
+  for (std::size_t level = 1; level < ladder.levels.size(); ++level) {
+    const Model& model = ladder.levels[level].model;
+    if (model.meshes.size() != ladder.original.meshes.size()) {
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("level {} has {} meshes, the original {}", level, model.meshes.size(),
+                              ladder.original.meshes.size()),
+                  path.string());
+    }
+  }
+  const bool missing =
+      (compression == Compression::meshopt && !has_meshopt()) || (compression == Compression::draco && !has_draco());
+  if (missing) {
+    return fail(ErrorCode::unsupported, "this build was made without that compression", path.string(),
+                "build with LODESTONE_WITH_MESHOPT and LODESTONE_WITH_DRACO, or leave --compress off");
+  }
+  return {};
+}
+
+// True for view indices that only Draco-coded primitives use, which are written anew.
+std::vector<bool> find_dead_views(const Document::Data& data) {
+  std::vector<bool> dead(data.views.size(), false);
+  for (const Json& mesh : array_member(data.json, "meshes")) {
+    for (const Json& primitive : array_member(mesh, "primitives")) {
+      if (!is_draco_primitive(primitive) || !is_triangle_primitive(primitive)) continue;
+      const Json* view = member(primitive["extensions"][kDraco], "bufferView");
+      if (view == nullptr) continue;
+      const std::uint64_t index = as_uint(*view).value_or(dead.size());
+      if (index < dead.size()) dead[static_cast<std::size_t>(index)] = true;
+    }
+  }
+  return dead;
+}
+
+// Every view of the document gets its bytes in the new binary chunk; views of the same bytes share them.
+void keep_views(Writer& w) {
+  const std::vector<bool> dead = find_dead_views(*w.document);
+  for (std::size_t i = 0; i < w.document->views.size(); ++i) {
+    if (dead[i]) {
+      w.pack->free_view(i);
+    } else {
+      w.pack->set_view(i, 0, as_text(w.document->views[i].bytes));
+    }
+  }
+}
+
+// Images in files of their own come along in the binary chunk.
+void keep_images(Writer& w) {
+  for (const ExternalImage& image : w.document->images) {
+    Json& json = w.json["images"][image.image];
+    json.erase("uri");
+    json["bufferView"] = w.pack->add_bytes(0, as_text(image.bytes));
+    json["mimeType"] = image.mime;
+  }
+}
+
+void begin_from_document(Writer& w) {
+  w.json = w.document->json;
+  w.instance_nodes = w.document->instance_nodes;
+  for (const Json& mesh : array_member(w.json, "meshes")) w.source_meshes.push_back(mesh);
+  w.pack.emplace(w.json, w.options.compression, w.ladder.levels.size());
+  keep_views(w);
+  keep_images(w);
+  for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+    unlist_extension(w.json, key, kDraco);
+    unlist_extension(w.json, key, kMeshopt);
+  }
+}
+
+void begin_fresh(Writer& w) {
+  const Model& original = w.ladder.original;
+  w.json = make_fresh_document(original);
+  for (std::size_t i = 0; i < original.instances.size(); ++i) w.instance_nodes.push_back(i);
+  for (const Json& mesh : w.json["meshes"]) w.source_meshes.push_back(mesh);
+  w.pack.emplace(w.json, w.options.compression, w.ladder.levels.size());
+  add_fresh_materials(original, w.json, *w.pack);
+}
+
+// The primitives of mesh `index` with the geometry of `mesh`; points and lines stay as they are.
+Json pack_primitives(Writer& w, std::size_t level, const Mesh& mesh, std::size_t index) {
+  const bool flip_v = w.document == nullptr && !w.ladder.original.uv_origin_top;
+  const std::vector<AttributePlan> plans = plan_attributes(mesh, w.document != nullptr, flip_v, w.report.warnings);
+  Json out = Json::array();
+  std::size_t group = 0;
+  for (const Json& source : array_member(w.source_meshes[index], "primitives")) {
+    if (!is_triangle_primitive(source)) {
+      out.push_back(source);
+      continue;
+    }
+    Json primitive = pack_primitive(*w.pack, level, mesh, group++, plans, source);
+    if (!primitive.is_null()) out.push_back(std::move(primitive));
+  }
+  if (w.options.compression == Compression::draco) {
+    for (const Json& p : out) {
+      if (!is_draco_primitive(p)) continue;
+      list_extension(w.json, "extensionsUsed", kDraco);
+      list_extension(w.json, "extensionsRequired", kDraco);
+    }
+  }
+  return out;
+}
+
+bool has_draco_primitive(const Json& mesh) {
+  for (const Json& p : array_member(mesh, "primitives")) {
+    if (is_draco_primitive(p) && is_triangle_primitive(p)) return true;
+  }
+  return false;
+}
+
+// Level 0: the document's own accessors where they can stay.
+Result<void> write_original_meshes(Writer& w, const Task& task) {
+  const std::vector<Mesh>& meshes = w.ladder.original.meshes;
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    if (task.cancelled()) return cancelled_error("writing");
+    const bool keeps = w.document != nullptr && w.options.compression == Compression::none &&
+                       !has_draco_primitive(w.source_meshes[m]) &&
+                       w.document->fingerprints[m] == fingerprint(meshes[m]);
+    if (!keeps) w.json["meshes"][m]["primitives"] = pack_primitives(w, 0, meshes[m], m);
+  }
+  return {};
+}
+
+// The JSON mesh of each mesh at a level: kNone where nothing is left.
+Result<std::vector<std::size_t>> write_level_meshes(Writer& w, std::size_t level, const Task& task) {
+  const std::vector<Mesh>& meshes = w.ladder.levels[level].model.meshes;
+  const std::vector<std::uint32_t> uses = instance_counts(w.ladder.original);
+  std::vector<std::size_t> out(meshes.size(), kNone);
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    if (uses[m] == 0) continue;
+    if (task.cancelled()) return cancelled_error("writing");
+    Json primitives = pack_primitives(w, level, meshes[m], m);
+    if (primitives.empty()) continue;
+    Json mesh = w.source_meshes[m];
+    const std::string name = string_member(mesh, "name");
+    if (!name.empty()) mesh["name"] = fmt::format("{}_LOD{}", name, level);
+    mesh["primitives"] = std::move(primitives);
+    out[m] = w.json["meshes"].size();
+    w.json["meshes"].push_back(std::move(mesh));
+  }
+  return out;
+}
+
+Result<void> write_levels(Writer& w, const Task& task) {
+  const std::size_t levels = w.ladder.levels.size();
+  std::vector<std::vector<std::size_t>> meshes;  // level - 1, mesh
+  for (std::size_t level = 1; level < levels; ++level) {
+    Result<std::vector<std::size_t>> one = write_level_meshes(w, level, task);
+    if (!one) return fail(one.error());
+    meshes.push_back(std::move(*one));
+    task.advance(1.0 / static_cast<double>(levels));
+  }
+  if (levels < 2) return {};
+  std::vector<bool> served(w.json["nodes"].size(), false);
+  for (std::size_t i = 0; i < w.ladder.original.instances.size(); ++i) {
+    const std::size_t node = w.instance_nodes[i];
+    if (served[node]) continue;  // several instances of one node: EXT_mesh_gpu_instancing
+    served[node] = true;
+    std::vector<std::size_t> of_node;
+    for (const auto& level : meshes) of_node.push_back(level[w.ladder.original.instances[i].mesh]);
+    const bool told = i < w.options.screen_coverage.size();
+    add_node_levels(w.json, node, of_node, told ? w.options.screen_coverage[i] : std::vector<double>{},
+                    w.report.warnings);
+  }
+  list_extension(w.json, "extensionsUsed", kMsftLod);
+  return {};
+}
+
+void put_u32(std::string& out, std::size_t value) {
+  const auto v = static_cast<std::uint32_t>(value);
+  out.append(reinterpret_cast<const char*>(&v), 4);
+}
+
+Result<void> write_glb(Writer& w, const std::filesystem::path& path, const std::string& bin) {
+  std::string text = w.json.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const std::size_t total = 12 + 8 + text.size() + (bin.empty() ? 0 : 8 + bin.size());
+  if (total > 0xffffffffULL) {
+    return fail(ErrorCode::cannot_write, fmt::format("would have {}, a GLB holds 4 GiB", human_bytes(total)),
+                path.string(), "write .gltf, or fewer or smaller levels");
+  }
+  Result<OutputFile> file = OutputFile::create(path);
+  if (!file) return fail(file.error());
+  std::string head = "glTF";
+  put_u32(head, 2);
+  put_u32(head, total);
+  put_u32(head, text.size());
+  head += "JSON";
+  file->write(head);
+  file->write(text);
+  if (!bin.empty()) {
+    std::string chunk;
+    put_u32(chunk, bin.size());
+    chunk.append("BIN\0", 4);
+    file->write(chunk);
+    file->write(bin);
+  }
+  w.report.total_bytes = total;
+  return file->commit();
+}
+
+Result<void> write_gltf_and_bin(Writer& w, const std::filesystem::path& path, const std::string& bin) {
+  std::filesystem::path bin_path = path;
+  bin_path.replace_extension(".bin");
+  if (!bin.empty()) w.json["buffers"][0]["uri"] = encode_uri(bin_path.filename().string());
+  const std::string text = w.json.dump(2) + "\n";
+  w.report.total_bytes = text.size() + bin.size();
+  Result<OutputFile> json_file = OutputFile::create(path);
+  if (!json_file) return fail(json_file.error());
+  json_file->write(text);
+  if (bin.empty()) return json_file->commit();
+  Result<OutputFile> bin_file = OutputFile::create(bin_path);
+  if (!bin_file) return fail(bin_file.error());
+  bin_file->write(bin);
+  if (const Result<void> ok = bin_file->commit(); !ok) return ok;
+  return json_file->commit();
+}
+
+void report_levels(Writer& w, const std::filesystem::path& path) {
+  w.report.level_bytes = w.pack->level_bytes();
+  std::uint64_t coarser = 0;
+  for (std::size_t level = 1; level < w.report.level_bytes.size(); ++level) coarser += w.report.level_bytes[level];
+  w.report.level_bytes[0] = w.report.total_bytes - coarser;
+  w.report.files.assign(w.ladder.levels.size(), path);
+}
+
+Result<WriteReport> write(const Ladder& ladder, const std::filesystem::path& path, const WriteOptions& options,
+                          const Task& task) {
+  if (const Result<void> ok = check(ladder, path, options.compression); !ok) return fail(ok.error());
+  const Document* document = ladder.original.document.get();
+  Writer w{ladder, options, document != nullptr ? &document->data() : nullptr, {}, {}, {}, {}, {}};
+  if (w.document != nullptr) {
+    begin_from_document(w);
+  } else {
+    begin_fresh(w);
+  }
+  if (const Result<void> ok = write_original_meshes(w, task); !ok) return fail(ok.error());
+  if (const Result<void> ok = write_levels(w, task); !ok) return fail(ok.error());
+  const std::string bin = w.pack->finish();
+  if (bin.empty()) w.json.erase("buffers");
+  if (task.cancelled()) return cancelled_error("writing");
+  std::string extension = path.extension().string();
+  const bool text = extension == ".gltf" || extension == ".GLTF";
+  const Result<void> ok = text ? write_gltf_and_bin(w, path, bin) : write_glb(w, path, bin);
+  if (!ok) return fail(ok.error());
+  report_levels(w, path);
+  return std::move(w.report);
+}
+
+}  // namespace
+
+Result<WriteReport> write_gltf(const Ladder& ladder, const std::filesystem::path& path, const WriteOptions& options,
+                               Task task) {
+  try {
+    return write(ladder, path, options, task);
+  } catch (const Json::exception& e) {  // strings in the document that are not UTF-8
+    return fail(ErrorCode::bad_format, e.what(), path.string(), "a name in the model is not UTF-8 text");
+  }
+}
+
+}  // namespace lodestone::io
