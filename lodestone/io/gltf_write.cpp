@@ -206,13 +206,16 @@ Result<void> write_levels(Writer& w, const Task& task) {
   return {};
 }
 
+// Names from other formats may be no UTF-8: what isn't becomes U+FFFD.
+std::string dump(const Json& json, int indent) { return json.dump(indent, ' ', false, Json::error_handler_t::replace); }
+
 void put_u32(std::string& out, std::size_t value) {
   const auto v = static_cast<std::uint32_t>(value);
   out.append(reinterpret_cast<const char*>(&v), 4);
 }
 
 Result<void> write_glb(Writer& w, const std::filesystem::path& path, const std::string& bin) {
-  std::string text = w.json.dump();
+  std::string text = dump(w.json, -1);
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const std::size_t total = 12 + 8 + text.size() + (bin.empty() ? 0 : 8 + bin.size());
   if (total > 0xffffffffULL) {
@@ -243,7 +246,7 @@ Result<void> write_gltf_and_bin(Writer& w, const std::filesystem::path& path, co
   std::filesystem::path bin_path = path;
   bin_path.replace_extension(".bin");
   if (!bin.empty()) w.json["buffers"][0]["uri"] = encode_uri(bin_path.filename().string());
-  const std::string text = w.json.dump(2) + "\n";
+  const std::string text = dump(w.json, 2) + "\n";
   w.report.total_bytes = text.size() + bin.size();
   Result<OutputFile> json_file = OutputFile::create(path);
   if (!json_file) return fail(json_file.error());
@@ -291,11 +294,7 @@ Result<WriteReport> write(const Ladder& ladder, const std::filesystem::path& pat
 
 Result<WriteReport> write_gltf(const Ladder& ladder, const std::filesystem::path& path, const WriteOptions& options,
                                Task task) {
-  try {
-    return write(ladder, path, options, task);
-  } catch (const Json::exception& e) {  // strings in the document that are not UTF-8
-    return fail(ErrorCode::bad_format, e.what(), path.string(), "a name in the model is not UTF-8 text");
-  }
+  return write(ladder, path, options, task);
 }
 
 }  // namespace lodestone::io
