@@ -64,7 +64,7 @@ Json build_json(const BuildReport& report) {
 }
 
 Json directed_json(const measure::DirectedDistance& d) {
-  return {{"max", d.max},
+  return {{"max", d.sampled_max},
           {"mean", d.mean},
           {"rms", d.rms},
           {"max_at", {d.max_at.x, d.max_at.y, d.max_at.z}},
@@ -131,10 +131,12 @@ std::string to_json(const MeasureReport& report) {
   const measure::Distance& d = report.distance;
   Json json;
   json["samples"] = d.samples;
-  json["max"] = d.max;
+  json["max"] = d.sampled_max;
   json["mean"] = d.mean;
   json["rms"] = d.rms;
-  json["relative_max"] = d.relative(d.max);
+  json["relative_max"] = d.relative(d.sampled_max);
+  json["sharpened_max"] = d.max;
+  json["relative_sharpened_max"] = d.relative(d.max);
   json["relative_mean"] = d.relative(d.mean);
   json["relative_rms"] = d.relative(d.rms);
   json["forward"] = directed_json(d.forward);

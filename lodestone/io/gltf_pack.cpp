@@ -111,7 +111,10 @@ std::size_t GltfPack::add_accessor(Json accessor) {
 }
 
 std::string GltfPack::finish() {
-  for (const std::size_t view : free_) set_view(view, 0, std::string_view("\0\0\0\0", 4));
+  for (const std::size_t view : free_) {  // nobody's: four bytes, so that the indices of the others stay
+    json_["bufferViews"][view] = {{"buffer", 0}, {"byteOffset", 0}};
+    set_view(view, 0, std::string_view("\0\0\0\0", 4));
+  }
   std::vector<std::size_t> base(bytes_.size(), 0);
   std::string all;
   std::size_t total = 0;

@@ -13,6 +13,7 @@
 #include "lodestone/core/weld.h"
 #include "lodestone/io/gltf_detail.h"
 #include "lodestone/io/gltf_primitive_detail.h"
+#include "lodestone/io/gltf_repair_detail.h"
 
 namespace lodestone::io {
 
@@ -75,7 +76,13 @@ Result<Model> read_document(std::string bytes, std::string name, const std::file
     return fail(ErrorCode::empty, "has no triangles: the scene draws no mesh", data.name, "is it the right file?");
   }
   model.materials = read_materials(data);
-  for (const Mesh& mesh : model.meshes) data.fingerprints.push_back(fingerprint(mesh));
+  for (Mesh& mesh : model.meshes) {
+    data.fingerprints.push_back(fingerprint(mesh));  // before anything is mended: a mended mesh is written anew
+    if (normalize_weights(mesh)) {
+      model.warnings.push_back(
+          fmt::format("{}: skin weights did not sum to one: scaled", mesh.name.empty() ? data.name : mesh.name));
+    }
+  }
   model.document = std::make_shared<const Document>(std::move(*loaded));
   return model;
 }

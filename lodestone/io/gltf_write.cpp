@@ -18,6 +18,7 @@
 #include "lodestone/io/gltf_fresh_detail.h"
 #include "lodestone/io/gltf_geometry_detail.h"
 #include "lodestone/io/gltf_lod_detail.h"
+#include "lodestone/io/gltf_repair_detail.h"
 #include "lodestone/io/meshopt_detail.h"
 #include "lodestone/io/uri_detail.h"
 
@@ -37,6 +38,7 @@ struct Writer {
   WriteReport report;
   std::vector<std::size_t> instance_nodes;
   std::vector<Json> source_meshes;  // as the document had them
+  std::vector<bool> rewritten;      // meshes whose level 0 is written anew
 };
 
 Result<void> check(const Ladder& ladder, const std::filesystem::path& path, Compression compression) {
@@ -58,26 +60,29 @@ Result<void> check(const Ladder& ladder, const std::filesystem::path& path, Comp
   return {};
 }
 
-// True for view indices that only Draco-coded primitives use, which are written anew.
-std::vector<bool> find_dead_views(const Document::Data& data) {
-  std::vector<bool> dead(data.views.size(), false);
-  for (const Json& mesh : array_member(data.json, "meshes")) {
-    for (const Json& primitive : array_member(mesh, "primitives")) {
-      if (!is_draco_primitive(primitive) || !is_triangle_primitive(primitive)) continue;
-      const Json* view = member(primitive["extensions"][kDraco], "bufferView");
-      if (view == nullptr) continue;
-      const std::uint64_t index = as_uint(*view).value_or(dead.size());
-      if (index < dead.size()) dead[static_cast<std::size_t>(index)] = true;
-    }
+bool has_draco_primitive(const Json& mesh) {
+  for (const Json& p : array_member(mesh, "primitives")) {
+    if (is_draco_primitive(p) && is_triangle_primitive(p)) return true;
   }
-  return dead;
+  return false;
 }
 
-// Every view of the document gets its bytes in the new binary chunk; views of the same bytes share them.
+// Meshes whose level 0 cannot keep the document's own accessors.
+std::vector<bool> find_rewritten(const Writer& w) {
+  const std::vector<Mesh>& meshes = w.ladder.original.meshes;
+  std::vector<bool> out(meshes.size(), true);
+  for (std::size_t m = 0; w.document != nullptr && m < meshes.size(); ++m) {
+    out[m] = w.options.compression != Compression::none || has_draco_primitive(w.source_meshes[m]) ||
+             w.document->fingerprints[m] != fingerprint(meshes[m]);
+  }
+  return out;
+}
+
+// Every view of the document that is still needed gets its bytes in the new binary chunk.
 void keep_views(Writer& w) {
-  const std::vector<bool> dead = find_dead_views(*w.document);
+  const std::vector<bool> released = release_views(*w.document, w.rewritten, w.json);
   for (std::size_t i = 0; i < w.document->views.size(); ++i) {
-    if (dead[i]) {
+    if (released[i]) {
       w.pack->free_view(i);
     } else {
       w.pack->set_view(i, 0, as_text(w.document->views[i].bytes));
@@ -100,6 +105,8 @@ void begin_from_document(Writer& w) {
   w.instance_nodes = w.document->instance_nodes;
   for (const Json& mesh : array_member(w.json, "meshes")) w.source_meshes.push_back(mesh);
   w.pack.emplace(w.json, w.options.compression, w.ladder.levels.size());
+  w.rewritten = find_rewritten(w);
+  repair_accessors(*w.document, w.json);
   keep_views(w);
   keep_images(w);
   for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
@@ -114,6 +121,7 @@ void begin_fresh(Writer& w) {
   for (std::size_t i = 0; i < original.instances.size(); ++i) w.instance_nodes.push_back(i);
   for (const Json& mesh : w.json["meshes"]) w.source_meshes.push_back(mesh);
   w.pack.emplace(w.json, w.options.compression, w.ladder.levels.size());
+  w.rewritten = find_rewritten(w);
   add_fresh_materials(original, w.json, *w.pack);
 }
 
@@ -139,13 +147,6 @@ Json pack_primitives(Writer& w, std::size_t level, const Mesh& mesh, std::size_t
     }
   }
   return out;
-}
-
-bool has_draco_primitive(const Json& mesh) {
-  for (const Json& p : array_member(mesh, "primitives")) {
-    if (is_draco_primitive(p) && is_triangle_primitive(p)) return true;
-  }
-  return false;
 }
 
 // Level 0: the document's own accessors where they can stay.
@@ -271,7 +272,7 @@ Result<WriteReport> write(const Ladder& ladder, const std::filesystem::path& pat
                           const Task& task) {
   if (const Result<void> ok = check(ladder, path, options.compression); !ok) return fail(ok.error());
   const Document* document = ladder.original.document.get();
-  Writer w{ladder, options, document != nullptr ? &document->data() : nullptr, {}, {}, {}, {}, {}};
+  Writer w{ladder, options, document != nullptr ? &document->data() : nullptr, {}, {}, {}, {}, {}, {}};
   if (w.document != nullptr) {
     begin_from_document(w);
   } else {

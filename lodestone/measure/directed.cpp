@@ -206,6 +206,7 @@ DirectedDistance directed_distance(const spatial::Surface& from, const spatial::
   DirectedDistance out;
   if (task.cancelled() || sums.peaks.list.empty()) return out;
   Peak peak = sums.peaks.list.front();
+  out.sampled_max = std::sqrt(peak.distance_sq);
   if (options.sharpen && peak.distance_sq > 0) peak = sharpen(from, to, sums.peaks, task);
   if (task.cancelled()) return out;
   out.max = std::sqrt(peak.distance_sq);

@@ -19,7 +19,8 @@ struct DistanceOptions {
 
 /// From one surface to the other. Mean, rms and normal angle are over the samples only, the maximum over vertices too.
 struct DirectedDistance {
-  double max = 0, mean = 0, rms = 0;  ///< model units
+  double max = 0, mean = 0, rms = 0;  ///< model units; max is sharpened when asked for
+  double sampled_max = 0;             ///< largest of the samples and vertices alone, as other tools tell it
   Vec3d max_at;                       ///< where on the first surface
   double normal_degrees = 0;          ///< mean angle between the faces' normals, 0 to 180
 };
@@ -28,6 +29,7 @@ struct Distance {
   DirectedDistance forward;   ///< from the original A to B
   DirectedDistance backward;  ///< from B to A
   double max = 0;             ///< the larger of both maxima
+  double sampled_max = 0;     ///< the larger of both sampled maxima
   double mean = 0;            ///< half the sum of both means
   double rms = 0;             ///< root of half the sum of both mean squares
   double normal_degrees = 0;  ///< half the sum of both
