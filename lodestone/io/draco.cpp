@@ -198,7 +198,7 @@ Result<DracoEncoded> encode_draco(const DracoMesh& in, bool keep_order) {
   for (const DracoAttribute& attribute : in.attributes) {
     const std::size_t size = attribute.components * size_of(attribute.type);
     draco::GeometryAttribute description;
-    description.Init(type_of(attribute.kind), nullptr, static_cast<std::int8_t>(attribute.components),
+    description.Init(type_of(attribute.kind), nullptr, static_cast<std::uint8_t>(attribute.components),
                      draco_type(attribute.type), attribute.normalized, static_cast<std::int64_t>(size), 0);
     const int id = mesh.AddAttribute(description, true, static_cast<std::uint32_t>(in.points));
     mesh.attribute(id)->set_unique_id(attribute.id);

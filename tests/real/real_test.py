@@ -1,0 +1,183 @@
+#!/usr/bin/env python3
+"""The command on every shared model, judged by tools that share no code with it.
+
+    real_test.py ladders|broken|formats|gltf|three --lod LOD --meshjudge JUDGE --data DIR --npm DIR
+
+Exit status: 0 all well, 1 with a line for each thing that isn't, 77 when something it needs is missing.
+"""
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+MODELS = {".ply", ".obj", ".stl", ".off", ".glb", ".gltf"}
+
+
+class Judge:
+    """Runs the commands and collects complaints."""
+
+    def __init__(self, args):
+        self.args = args
+        self.scratch = Path(tempfile.mkdtemp(prefix="lodestone-real-"))
+        self.complaints = []
+        self.checked = 0
+
+    def complain(self, text):
+        self.complaints.append(text)
+
+    def lod(self, *args, limit=300):
+        return subprocess.run([self.args.lod, *map(str, args)], capture_output=True, text=True, timeout=limit)
+
+    def judge(self, *args):
+        run = subprocess.run([self.args.meshjudge, *map(str, args), "--json"], capture_output=True, text=True, timeout=300)
+        if run.returncode != 0:
+            raise RuntimeError(f"meshjudge {args}: {run.stderr.strip()}")
+        return json.loads(run.stdout)
+
+    def models(self, *folders):
+        for folder in folders:
+            for path in sorted((self.args.data / folder).rglob("*")):
+                if path.suffix.lower() in MODELS and path.is_file():
+                    yield path
+
+    def build(self, path, *options):
+        """The ladder of a model and its JSON, or None after a complaint."""
+        out = self.scratch / "out.glb"
+        out.unlink(missing_ok=True)
+        run = self.lod("build", path, "-o", out, "--json", *options)
+        self.checked += 1
+        if run.returncode not in (0, 3):
+            self.complain(f"{path.name}: exit {run.returncode}: {run.stderr.strip()[-200:]}")
+            return None, None
+        if run.returncode == 3 and len(run.stderr.strip()) < 20:
+            self.complain(f"{path.name}: exit 3 without a reason")
+        return out, json.loads(run.stdout)
+
+
+def ladders(t):
+    """Levels are what the JSON says, their errors are the referee's, closed manifold stays so."""
+    for path in t.models("meshes", "textured"):
+        out, report = t.build(path)
+        if out is None:
+            continue
+        errors = [level["error"] for level in report["levels"]]
+        if errors != sorted(errors) or errors[0] != 0:
+            t.complain(f"{path.name}: errors fall: {errors}")
+        start = t.judge("topology", out, "--level", 0)
+        clean = start["closed"] and start["manifold"]
+        for level in report["levels"][1:]:
+            k = level["level"]
+            now = t.judge("topology", out, "--level", k)
+            if now["triangles"] != level["triangles"]:
+                t.complain(f"{path.name} level {k}: {now['triangles']} triangles, the JSON says {level['triangles']}")
+            if clean and not (now["closed"] and now["manifold"] and now["duplicate_faces"] == 0):
+                t.complain(f"{path.name} level {k}: no longer closed and manifold")
+            if now["duplicate_faces"] > start["duplicate_faces"]:
+                t.complain(f"{path.name} level {k}: {now['duplicate_faces']} duplicate faces")
+            if now["nonmanifold_edges"] > start["nonmanifold_edges"]:
+                t.complain(f"{path.name} level {k}: {now['nonmanifold_edges']} non-manifold edges")
+            compare_errors(t, path, out, level)
+
+
+def compare_errors(t, path, out, level):
+    k = level["level"]
+    # Polygons are fanned by the referee and cut properly by us: so against level 0 of the written file.
+    d = t.judge("distance", out, out, "--level-a", 0, "--level-b", k, "--samples", 200000)
+    floor = 1e-7 * d["diagonal"]  # below this, rounding decides
+    if abs(level["mean_error"] - d["mean"]) > 0.03 * d["mean"] + floor:
+        t.complain(f"{path.name} level {k}: mean {level['mean_error']:.6g}, the referee {d['mean']:.6g}")
+    if level["error"] < 0.97 * d["max"] - floor:
+        t.complain(f"{path.name} level {k}: error {level['error']:.6g}, the referee found {d['max']:.6g}")
+
+
+def broken(t):
+    """A result or one clear line; nothing left behind by a failure."""
+    for path in t.models("broken"):
+        out = t.scratch / "out.glb"
+        out.unlink(missing_ok=True)
+        run = t.lod("build", path, "-o", out, "--levels", 3, limit=30)
+        t.checked += 1
+        if run.returncode not in (0, 1, 3):
+            t.complain(f"{path.name}: exit {run.returncode}")
+        if run.returncode == 1:
+            lines = [line for line in run.stderr.splitlines() if line.startswith("lod: ") and not line.startswith("lod: warning")]
+            if len(lines) != 1 or path.name not in lines[0]:
+                t.complain(f"{path.name}: not one clear line: {run.stderr.strip()[-200:]}")
+            if list(t.scratch.iterdir()):
+                t.complain(f"{path.name}: left {[p.name for p in t.scratch.iterdir()]}")
+
+
+def formats(t):
+    """Converting keeps counts and shape."""
+    for name in ("meshes/cow.obj", "meshes/fandisk.obj", "textured/spot_textured/spot.obj", "textured/Duck.glb"):
+        source = t.args.data / name
+        want = json.loads(t.lod("info", source, "--json").stdout)
+        for extension in (".ply", ".obj", ".stl", ".off", ".glb", ".gltf"):
+            folder = t.scratch / f"{source.stem}{extension[1:]}"
+            folder.mkdir()
+            out = folder / f"x{extension}"
+            run = t.lod("convert", source, out)
+            t.checked += 1
+            if run.returncode != 0:
+                t.complain(f"{name} to {extension}: {run.stderr.strip()}")
+                continue
+            got = json.loads(t.lod("info", out, "--json").stdout)
+            for key in ("triangles", "boundary_edges", "components"):
+                if got[key] != want[key]:
+                    t.complain(f"{name} to {extension}: {key} {got[key]}, was {want[key]}")
+            if abs(got["area"] / want["area"] - 1) > 1e-5:
+                t.complain(f"{name} to {extension}: area {got['area']}, was {want['area']}")
+
+
+def node(t, script, *args):
+    if not (t.args.npm / "node_modules").exists():
+        print(f"{t.args.npm}/node_modules is missing: run tools/npm_install")
+        sys.exit(77)
+    run = subprocess.run(["node", HERE / script, t.args.npm / "node_modules", *args], capture_output=True, text=True, timeout=120)
+    return run.returncode, (run.stdout + run.stderr).strip()
+
+
+def gltf(t):
+    """The Khronos validator finds no error in what is written."""
+    for path in t.models("textured"):
+        for compression in ("none", "meshopt", "draco"):
+            out, _ = t.build(path, "--levels", 3, "--compress", compression)
+            if out is None:
+                continue
+            status, text = node(t, "validate_gltf.mjs", out)
+            if status != 0:
+                t.complain(f"{path.name} {compression}: {text[:300]}")
+
+
+def three(t):
+    """three.js loads what is written; textures, skins and animations are still there."""
+    wanted = {"CesiumMan.glb": "skins 1 animations 1", "Fox.gltf": "skins 1 animations 3"}
+    for path in t.models("textured"):
+        out, _ = t.build(path, "--levels", 3)
+        if out is None:
+            continue
+        status, text = node(t, "load_three.mjs", out)
+        if status != 0 or wanted.get(path.name, "") not in text:
+            t.complain(f"{path.name}: {text[:300]}")
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("part", choices=["ladders", "broken", "formats", "gltf", "three"])
+    for name in ("--lod", "--meshjudge"):
+        parser.add_argument(name, required=True)
+    for name in ("--data", "--npm"):
+        parser.add_argument(name, type=lambda text: Path(text).resolve(), required=True)
+    t = Judge(parser.parse_args())
+    globals()[t.args.part](t)
+    for complaint in t.complaints:
+        print(complaint)
+    print(f"{t.args.part}: {t.checked} runs, {len(t.complaints)} complaints")
+    return 1 if t.complaints or t.checked == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
