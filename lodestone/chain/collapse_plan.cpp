@@ -9,17 +9,24 @@ namespace lodestone::chain::detail {
 
 namespace {
 
-// How much each mesh's errors grow on their way to world space, at most.
-std::vector<double> largest_scales(const Model& model) {
+// The placing of each mesh that shows its errors largest: in its space the mesh is simplified, and its errors are the
+// scene's.
+std::vector<Mat4d> largest_placings(const Model& model) {
+  std::vector<Mat4d> placings(model.meshes.size());
   std::vector<double> scales(model.meshes.size(), 0);
-  for (const Instance& i : model.instances) scales[i.mesh] = std::max(scales[i.mesh], i.transform.scale_bound());
-  return scales;
+  for (const Instance& i : model.instances) {
+    const double scale = i.transform.scale_bound();
+    if (scale <= scales[i.mesh]) continue;
+    scales[i.mesh] = scale;
+    placings[i.mesh] = i.transform.linear();
+  }
+  return placings;
 }
 
 // All meshes' collapses by error in world space; within a mesh the log's order, as its errors never fall.
-std::vector<std::uint32_t> merge_order(const std::vector<CollapseLog>& logs, const std::vector<double>& scales) {
+std::vector<std::uint32_t> merge_order(const std::vector<CollapseLog>& logs) {
   struct Step {
-    double error;
+    float error;
     std::uint32_t mesh;
   };
   std::vector<Step> steps;
@@ -27,7 +34,7 @@ std::vector<std::uint32_t> merge_order(const std::vector<CollapseLog>& logs, con
   for (const CollapseLog& log : logs) total += log.collapses.size();
   steps.reserve(total);
   for (std::uint32_t m = 0; m < logs.size(); ++m) {
-    for (const Collapse& c : logs[m].collapses) steps.push_back({static_cast<double>(c.error) * scales[m], m});
+    for (const Collapse& c : logs[m].collapses) steps.push_back({c.error, m});
   }
   const bool one_mesh = steps.empty() || steps.front().mesh == steps.back().mesh;
   if (!one_mesh) {
@@ -53,6 +60,7 @@ Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t sma
   const std::vector<std::uint32_t> uses = instance_counts(original);
   const std::size_t all = std::max<std::size_t>(1, drawn_triangles(original));
   const bool one_mesh = original.instances.size() == 1;
+  const std::vector<Mat4d> placings = largest_placings(original);
   plan.logs_.resize(original.meshes.size());
   std::size_t drawn = 0;
   for (std::size_t m = 0; m < original.meshes.size(); ++m) {
@@ -61,6 +69,7 @@ Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t sma
     simplify::EdgeCollapseOptions options;
     options.target_triangles = one_mesh ? std::max<std::size_t>(1, smallest) : 1;
     options.keep_border = keep_border;
+    options.metric = placings[m];
     options.record_log = true;
     const double share = static_cast<double>(mesh.triangles.size() * uses[m]) / static_cast<double>(all);
     Result<simplify::EdgeCollapseResult> run = simplify::collapse_edges(mesh, options, task.part(share));
@@ -69,7 +78,7 @@ Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t sma
     drawn += std::size_t{plan.logs_[m].start_triangles} * uses[m];
     add(plan.locked_, run->locked);
   }
-  plan.mesh_of_step_ = merge_order(plan.logs_, largest_scales(original));
+  plan.mesh_of_step_ = merge_order(plan.logs_);
   plan.drawn_after_.reserve(plan.size() + 1);
   plan.drawn_after_.push_back(drawn);
   std::vector<std::size_t> next(original.meshes.size(), 0);

@@ -1,5 +1,5 @@
-// libdraco behind plain structs. The library throws nothing of its own, but a stream that lies about its size may make it
-// ask for too much memory: that is caught here.
+// libdraco behind plain structs. The library throws nothing of its own, but a stream that lies about its size may make
+// it ask for too much memory: that is caught here.
 #include "lodestone/io/draco.h"
 
 #include <fmt/format.h>
@@ -124,8 +124,8 @@ Result<DracoAttribute> read_attribute(const draco::PointAttribute& in, std::size
   for (std::size_t p = 0; p < points; ++p) {
     const draco::AttributeValueIndex value = in.mapped_index(draco::PointIndex(static_cast<std::uint32_t>(p)));
     if (value.value() >= in.size()) {
-      return fail(ErrorCode::bad_format, fmt::format("a Draco attribute has {} values, point {} names {}", in.size(), p,
-                                                     value.value()),
+      return fail(ErrorCode::bad_format,
+                  fmt::format("a Draco attribute has {} values, point {} names {}", in.size(), p, value.value()),
                   where);
     }
     std::byte* to = values->data() + p * size;
@@ -146,8 +146,8 @@ Result<DracoMesh> to_plain(const draco::Mesh& in, const std::string& where) {
   for (std::uint32_t f = 0; f < in.num_faces(); ++f) {
     for (const draco::PointIndex& p : in.face(draco::FaceIndex(f))) {
       if (p.value() >= out.points) {
-        return fail(ErrorCode::bad_format, fmt::format("Draco face {} names point {}, there are {}", f, p.value(), out.points),
-                    where);
+        return fail(ErrorCode::bad_format,
+                    fmt::format("Draco face {} names point {}, there are {}", f, p.value(), out.points), where);
       }
       out.indices.push_back(p.value());
     }
@@ -174,16 +174,18 @@ Result<DracoMesh> decode_draco(std::string_view bytes, const std::string& where)
   draco::Decoder decoder;
   auto mesh = decoder.DecodeMeshFromBuffer(&buffer);
   if (!mesh.ok()) {
-    return fail(ErrorCode::bad_format, fmt::format("the Draco stream cannot be decoded: {}", mesh.status().error_msg_string()),
-                where, "is it cut off?");
+    return fail(ErrorCode::bad_format,
+                fmt::format("the Draco stream cannot be decoded: {}", mesh.status().error_msg_string()), where,
+                "is it cut off?");
   }
   return to_plain(*mesh.value(), where);
 } catch (const std::bad_alloc&) {
-  return fail(ErrorCode::bad_format, fmt::format("a Draco stream of {} bytes asks for more memory than there is", bytes.size()),
-              where, "is it broken?");
-} catch (const std::length_error&) {
-  return fail(ErrorCode::bad_format, fmt::format("a Draco stream of {} bytes names an impossible size", bytes.size()), where,
+  return fail(ErrorCode::bad_format,
+              fmt::format("a Draco stream of {} bytes asks for more memory than there is", bytes.size()), where,
               "is it broken?");
+} catch (const std::length_error&) {
+  return fail(ErrorCode::bad_format, fmt::format("a Draco stream of {} bytes names an impossible size", bytes.size()),
+              where, "is it broken?");
 }
 
 Result<DracoEncoded> encode_draco(const DracoMesh& in, bool keep_order) {
@@ -251,7 +253,8 @@ Naming name_attribute(const DracoAttribute& attribute, std::uint32_t counts[5]) 
       if (n == 0 && attribute.components == 3) return {"NORMAL", Semantic::normal, 0};
       break;
     case DracoKind::color:
-      if (attribute.components >= 3 && attribute.components <= 4) return {fmt::format("COLOR_{}", n), Semantic::color, n};
+      if (attribute.components >= 3 && attribute.components <= 4)
+        return {fmt::format("COLOR_{}", n), Semantic::color, n};
       break;
     case DracoKind::texcoord:
       if (attribute.components == 2) return {fmt::format("TEXCOORD_{}", n), Semantic::uv, n};
@@ -315,8 +318,8 @@ std::uint32_t as_bits(const std::byte* at, const DracoAttribute& a) {
 }
 
 AttributeStream to_stream(const DracoAttribute& a, const Naming& naming, std::size_t points) {
-  AttributeStream stream = make_stream(naming.name, naming.semantic, static_cast<std::uint32_t>(a.components), a.type,
-                                       a.normalized, points);
+  AttributeStream stream =
+      make_stream(naming.name, naming.semantic, static_cast<std::uint32_t>(a.components), a.type, a.normalized, points);
   stream.set = naming.set;
   const std::size_t size = size_of(a.type);
   const auto fill = [&](auto& values) {

@@ -189,7 +189,7 @@ void with_type(ComponentType type, Use use) {
 
 }  // namespace
 
-Result<Accessor> find_accessor(const Document::Data& data, std::size_t index) {
+Result<Accessor> find_accessor(const Document::Data& data, std::size_t index, Budget* budget) {
   const Json& json = array_member(data.json, "accessors")[index];
   Accessor out;
   out.index = index;
@@ -223,6 +223,7 @@ Result<Accessor> find_accessor(const Document::Data& data, std::size_t index) {
   }
   out.count = static_cast<std::size_t>(*count);
   if (out.data == nullptr || sparse != nullptr) {
+    if (budget != nullptr && !budget->take(out.count * size)) return unfolds_too_far(data, "the accessors", out.where);
     auto dense = std::make_shared<std::vector<std::byte>>(out.count * size);
     for (std::size_t i = 0; out.data != nullptr && i < out.count; ++i) {
       std::memcpy(dense->data() + i * size, out.data + i * out.stride, size);

@@ -82,7 +82,8 @@ struct Document::Data {
   std::uint64_t file_bytes = 0;                             ///< all bytes read
 };
 
-/// Limits what a file may unfold to: shared or compressed parts can be named any number of times.
+/// Limits the memory that a file may unfold to, in bytes: shared, sparse or compressed parts can be named any number of
+/// times, and that must cost no more than a small multiple of the file.
 struct Budget {
   std::uint64_t left = 0;
   bool take(std::uint64_t amount) {
@@ -91,6 +92,10 @@ struct Budget {
     return true;
   }
 };
+inline constexpr std::uint64_t kUnfoldFactor = 64, kUnfoldFloor = std::uint64_t{64} << 20;
+inline Budget unfold_budget(std::uint64_t file_bytes) { return {file_bytes * kUnfoldFactor + kUnfoldFloor}; }
+/// The error of a budget that is used up; `what` unfolds.
+tl::unexpected<Error> unfolds_too_far(const Document::Data& data, std::string_view what, const std::string& where);
 
 /// Container, JSON, buffers, images, views. `folder` empty: no other files may be named.
 Result<std::unique_ptr<Document::Data>> load_document(std::string bytes, std::string name,
@@ -137,8 +142,9 @@ unsigned gltf_number(ComponentType type);
 /// Components of "SCALAR", "VEC3", "MAT4" …; 0 for others.
 std::size_t components_of(std::string_view type);
 
+/// `budget` (may be null) pays for elements that must be copied: sparse ones, and zeros of no buffer view.
 /// Errors: bad_format.
-Result<Accessor> find_accessor(const Document::Data& data, std::size_t index);
+Result<Accessor> find_accessor(const Document::Data& data, std::size_t index, Budget* budget = nullptr);
 
 /// Values of the elements `ids` (empty: all in order) as floats, normalised integers divided. Writes
 /// out[i * out_components + c]; components that the accessor lacks become `missing`.
@@ -168,7 +174,7 @@ Result<Mesh> read_mesh(const Document::Data& data, std::size_t index, Budget& bu
                        const Task& task);
 
 /// Fills instances and data.instance_nodes.
-Result<void> read_scene(Document::Data& data, Model& model);
+Result<void> read_scene(Document::Data& data, Model& model, Budget& budget);
 
 std::vector<Material> read_materials(const Document::Data& data);
 

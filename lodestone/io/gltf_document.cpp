@@ -24,6 +24,12 @@ std::string place(const Document::Data& data, std::string_view what, std::size_t
   return fmt::format("{}: {} {}", data.name, what, index);
 }
 
+tl::unexpected<Error> unfolds_too_far(const Document::Data& data, std::string_view what, const std::string& where) {
+  return fail(ErrorCode::bad_format,
+              fmt::format("{} unfold to more than {} times the {} bytes read", what, kUnfoldFactor, data.file_bytes),
+              where, "is the file broken?");
+}
+
 std::string sniff_mime(std::string_view bytes) {
   const auto starts = [&](std::string_view magic) { return bytes.substr(0, magic.size()) == magic; };
   if (starts("\x89PNG")) return "image/png";
@@ -222,7 +228,7 @@ Result<View> decode_view(Loader& loader, const Json& meshopt, std::size_t stride
       decode_meshopt(*range, static_cast<std::size_t>(*count), static_cast<std::size_t>(*size), m, f, where);
   if (!bytes) return fail(bytes.error());
   if (!loader.unfolded.take(bytes->size())) {
-    return fail(ErrorCode::bad_format, "the compressed views unfold to more than 64 times the file", where);
+    return unfolds_too_far(loader.data, "the compressed views", where);
   }
   loader.data.storage.push_back(std::make_shared<const std::string>(std::move(*bytes)));
   view.bytes = as_bytes_of(*loader.data.storage.back());
@@ -255,7 +261,7 @@ Result<View> load_view(Loader& loader, const Json& json, std::size_t index) {
 
 Result<void> load_views(Loader& loader) {
   const Json& views = array_member(loader.data.json, "bufferViews");
-  loader.unfolded.left = loader.data.file_bytes * 64;
+  loader.unfolded = unfold_budget(loader.data.file_bytes);
   loader.data.views.reserve(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (loader.task.cancelled()) return cancelled_error("reading");

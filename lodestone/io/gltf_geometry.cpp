@@ -3,19 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "lodestone/io/draco_detail.h"
-#include "lodestone/math/triangle.h"
 
 namespace lodestone::io {
 
 namespace {
-
-constexpr const char* kTypes[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
 
 void warn_once(std::vector<std::string>& warnings, std::string text) {
   if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(std::move(text));
@@ -30,6 +24,15 @@ std::string custom_name(std::string_view name) {
     out += plain ? c : '_';
   }
   return out;
+}
+
+// Names that differ only in what glTF does not allow must not fall together.
+void make_unique(std::string& name, const std::vector<AttributePlan>& plans) {
+  const auto taken = [&](const std::string& n) {
+    return std::any_of(plans.begin(), plans.end(), [&](const AttributePlan& p) { return p.name == n; });
+  };
+  const std::string base = name;
+  for (int i = 2; taken(name); ++i) name = fmt::format("{}_{}", base, i);
 }
 
 std::uint32_t largest_value(const std::vector<std::uint32_t>& values) {
@@ -105,6 +108,7 @@ std::vector<AttributePlan> plan_attributes(const Mesh& mesh, bool named, bool fl
       warn_once(warnings, fmt::format("attribute '{}' is double: stored as float", stream.name));
     }
     plan.flip_v = flip_v && stream.semantic == Semantic::uv;
+    if (!named) make_unique(plan.name, plans);
     plans.push_back(std::move(plan));
   }
   return plans;
@@ -112,198 +116,8 @@ std::vector<AttributePlan> plan_attributes(const Mesh& mesh, bool named, bool fl
 
 namespace {
 
-// The wedges that a group uses, ascending, and its corners as places in that list.
-struct GroupIndex {
-  std::vector<std::uint32_t> wedges, corners;
-};
-
-GroupIndex index_group(const Mesh& mesh, std::size_t group) {
-  GroupIndex out;
-  std::vector<std::uint32_t> place(mesh.wedge_count(), kNone);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (mesh.group_of(t) != group) continue;
-    for (const std::uint32_t w : mesh.triangles[t]) place[w] = 0;
-  }
-  for (std::uint32_t w = 0; w < place.size(); ++w) {
-    if (place[w] == kNone) continue;
-    place[w] = static_cast<std::uint32_t>(out.wedges.size());
-    out.wedges.push_back(w);
-  }
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (mesh.group_of(t) != group) continue;
-    for (const std::uint32_t w : mesh.triangles[t]) out.corners.push_back(place[w]);
-  }
-  return out;
-}
-
-// One element's numbers, whatever they are stored as.
-void read_tuple(const AttributeStream& stream, std::uint32_t wedge, double* out) {
-  std::visit(
-      [&](const auto& values) {
-        for (std::size_t k = 0; k < stream.components; ++k) {
-          const auto v = values[wedge * stream.components + k];
-          if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::uint32_t>) {
-            out[k] = stream.type == ComponentType::int8 || stream.type == ComponentType::int16 ||
-                             stream.type == ComponentType::int32
-                         ? static_cast<double>(std::bit_cast<std::int32_t>(v))
-                         : static_cast<double>(v);
-          } else {
-            out[k] = static_cast<double>(v);
-          }
-        }
-      },
-      stream.values);
-}
-
-double largest_of(ComponentType type) {
-  switch (type) {
-    case ComponentType::int8:
-      return 127;
-    case ComponentType::uint8:
-      return 255;
-    case ComponentType::int16:
-      return 32767;
-    case ComponentType::uint16:
-      return 65535;
-    default:
-      return 1;
-  }
-}
-
-template <class T>
-void store(char* at, double value) {
-  const auto v = static_cast<T>(value);
-  std::memcpy(at, &v, sizeof(T));
-}
-
-void store_number(char* at, double value, ComponentType type, bool normalized) {
-  if (type == ComponentType::float32) return store<float>(at, value);
-  const double most = largest_of(type);
-  const bool is_signed = type == ComponentType::int8 || type == ComponentType::int16;
-  double whole = normalized ? value * most : value;
-  whole = std::clamp(whole < 0 ? std::ceil(whole - 0.5) : std::floor(whole + 0.5), is_signed ? -most : 0.0, most);
-  switch (type) {
-    case ComponentType::int8:
-      return store<std::int8_t>(at, whole);
-    case ComponentType::uint8:
-      return store<std::uint8_t>(at, whole);
-    case ComponentType::int16:
-      return store<std::int16_t>(at, whole);
-    default:
-      return store<std::uint16_t>(at, whole);
-  }
-}
-
-// Exactly one after rounding to the stored type: the largest takes the rest.
-void sum_to_one(double* weights, std::size_t n, ComponentType type) {
-  double sum = 0;
-  for (std::size_t k = 0; k < n; ++k) sum += weights[k];
-  if (!(std::abs(sum - 1) < 0.02)) return;  // several sets share the sum, or the file had it otherwise
-  const double most = largest_of(type);
-  std::size_t largest = 0;
-  double rounded = 0;
-  for (std::size_t k = 0; k < n; ++k) {
-    weights[k] /= sum;
-    weights[k] = type == ComponentType::float32 ? static_cast<double>(static_cast<float>(weights[k]))
-                                                : std::floor(weights[k] * most + 0.5) / most;
-    if (weights[k] > weights[largest]) largest = k;
-    rounded += weights[k];
-  }
-  weights[largest] += 1 - rounded;
-}
-
-void make_valid(const AttributeStream& stream, const AttributePlan& plan, Vec3d face_normal, double* v) {
-  if (stream.semantic == Semantic::normal || stream.semantic == Semantic::tangent) {
-    const double l = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    const Vec3d spare = face_normal == Vec3d{} ? Vec3d{0, 0, 1} : face_normal;
-    for (std::size_t k = 0; k < 3; ++k) v[k] = l > 1e-12 ? v[k] / l : spare[k];
-    if (stream.semantic == Semantic::tangent) v[3] = v[3] < 0 ? -1 : 1;
-  } else if (stream.semantic == Semantic::weights) {
-    sum_to_one(v, stream.components, plan.type);
-  } else if (stream.semantic == Semantic::color) {
-    for (std::size_t k = 0; k < stream.components; ++k) v[k] = std::clamp(v[k], 0.0, 1.0);
-  }
-  if (plan.flip_v) v[1] = 1 - v[1];
-}
-
-std::vector<Vec3d> face_normals_of(const Mesh& mesh, const GroupIndex& index) {
-  std::vector<Vec3d> normals(index.wedges.size());
-  for (std::size_t c = 0; c < index.corners.size(); c += 3) {
-    Vec3d p[3];
-    for (std::size_t k = 0; k < 3; ++k)
-      p[k] = to_double(mesh.positions[mesh.vertex_of(index.wedges[index.corners[c + k]])]);
-    const Vec3d n = normalized(scaled_normal(p[0], p[1], p[2]));
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (normals[index.corners[c + k]] == Vec3d{}) normals[index.corners[c + k]] = n;
-    }
-  }
-  return normals;
-}
-
-// An attribute's elements, each padded to a multiple of four bytes.
-struct Column {
-  std::string bytes;
-  std::size_t components = 3, stride = 12;
-  ComponentType type = ComponentType::float32;
-  bool normalized = false;
-};
-
-Column stream_column(const Mesh& mesh, const GroupIndex& index, const AttributePlan& plan,
-                     const std::vector<Vec3d>& face_normals) {
-  const AttributeStream& stream = mesh.attributes[plan.stream];
-  Column column;
-  column.components = stream.components;
-  column.type = plan.type;
-  column.normalized = plan.normalized;
-  const std::size_t width = size_of(plan.type);
-  column.stride = (width * stream.components + 3) / 4 * 4;
-  column.bytes.assign(index.wedges.size() * column.stride, '\0');
-  std::vector<double> tuple(std::max<std::size_t>(4, stream.components));
-  for (std::size_t i = 0; i < index.wedges.size(); ++i) {
-    read_tuple(stream, index.wedges[i], tuple.data());
-    make_valid(stream, plan, face_normals.empty() ? Vec3d{} : face_normals[i], tuple.data());
-    for (std::size_t k = 0; k < stream.components; ++k) {
-      store_number(column.bytes.data() + i * column.stride + k * width, tuple[k], plan.type, plan.normalized);
-    }
-  }
-  return column;
-}
-
-Column position_column(const Mesh& mesh, const GroupIndex& index) {
-  Column column;
-  column.bytes.resize(index.wedges.size() * 12);
-  for (std::size_t i = 0; i < index.wedges.size(); ++i) {
-    std::memcpy(column.bytes.data() + 12 * i, &mesh.positions[mesh.vertex_of(index.wedges[i])], 12);
-  }
-  return column;
-}
-
-// Smallest and largest of each component of a float column, as positions must tell them.
-void add_bounds(Json& accessor, const Column& column) {
-  std::vector<float> low(column.components, std::numeric_limits<float>::infinity()), high(column.components);
-  for (float& h : high) h = -std::numeric_limits<float>::infinity();
-  for (std::size_t i = 0; i < column.bytes.size(); i += column.stride) {
-    for (std::size_t k = 0; k < column.components; ++k) {
-      float v = 0;
-      std::memcpy(&v, column.bytes.data() + i + 4 * k, 4);
-      low[k] = std::min(low[k], v);
-      high[k] = std::max(high[k], v);
-    }
-  }
-  accessor["min"] = low;
-  accessor["max"] = high;
-}
-
-Json describe(const Column& column, std::size_t count, bool bounds) {
-  Json accessor{{"componentType", gltf_number(column.type)}, {"count", count}, {"type", kTypes[column.components]}};
-  if (column.normalized) accessor["normalized"] = true;
-  if (bounds && column.type == ComponentType::float32) add_bounds(accessor, column);
-  return accessor;
-}
-
 std::size_t pack_column(GltfPack& pack, std::size_t level, Column column, bool bounds) {
-  const std::size_t count = column.bytes.size() / column.stride;
-  Json accessor = describe(column, count, bounds);
+  Json accessor = describe_column(column, column.count(), bounds);
   Json out{{"bufferView", pack.add_vertices(level, std::move(column.bytes), column.stride)}};
   out.update(accessor);
   return pack.add_accessor(std::move(out));
@@ -337,8 +151,8 @@ struct NamedColumn {
   Column column;
 };
 
-// Attributes and indices as one Draco stream. Accessors tell counts and types only.
-void pack_draco(GltfPack& pack, std::size_t level, const GroupIndex& index, std::vector<NamedColumn> columns,
+// Attributes and indices as one Draco stream; accessors tell counts and types only. False if Draco cannot hold them.
+bool pack_draco(GltfPack& pack, std::size_t level, const GroupIndex& index, const std::vector<NamedColumn>& columns,
                 Json& primitive) {
   DracoMesh mesh;
   mesh.points = index.wedges.size();
@@ -349,48 +163,93 @@ void pack_draco(GltfPack& pack, std::size_t level, const GroupIndex& index, std:
     mesh.attributes.push_back({static_cast<std::uint32_t>(i), kind, c.type, c.normalized, c.components, tight(c)});
   }
   const Result<DracoEncoded> coded = encode_draco(mesh, false);
-  if (!coded) return;  // the caller falls back to plain accessors
+  if (!coded) return false;
   Json ids = Json::object(), attributes = Json::object();
   for (std::size_t i = 0; i < columns.size(); ++i) {
     ids[columns[i].name] = i;
     attributes[columns[i].name] =
-        pack.add_accessor(describe(columns[i].column, coded->points, columns[i].name == "POSITION"));
+        pack.add_accessor(describe_column(columns[i].column, coded->points, columns[i].name == "POSITION"));
   }
   primitive["attributes"] = std::move(attributes);
   primitive["indices"] = pack.add_accessor(
       {{"componentType", coded->points < 65536 ? 5123 : 5125}, {"count", coded->triangles * 3}, {"type", "SCALAR"}});
   primitive["extensions"][kDraco] = {{"bufferView", pack.add_bytes(level, coded->bytes)},
                                      {"attributes", std::move(ids)}};
+  return true;
+}
+
+// What the source's positions are stored as: quantized files have integers.
+Column pack_positions(GltfPack& pack, const Mesh& mesh, const GroupIndex& index, const Json& source) {
+  const Json* attributes = member(source, "attributes");
+  const Json* accessor = attributes != nullptr ? pack.find_accessor_json(member(*attributes, "POSITION")) : nullptr;
+  const Json* number = accessor != nullptr ? member(*accessor, "componentType") : nullptr;
+  if (number == nullptr || pack.compression() == Compression::draco) {
+    return position_column(mesh, index, ComponentType::float32, false);
+  }
+  const ComponentType type = component_type(as_uint(*number).value_or(0)).value_or(ComponentType::float32);
+  const Json* normalized = member(*accessor, "normalized");
+  return position_column(mesh, index, type,
+                         normalized != nullptr && normalized->is_boolean() && normalized->get<bool>());
+}
+
+// Attributes that are not morph deltas, positions first.
+std::vector<NamedColumn> plain_columns(GltfPack& pack, const Mesh& mesh, const GroupIndex& index,
+                                       const std::vector<AttributePlan>& plans, const Json& source) {
+  std::vector<NamedColumn> columns;
+  columns.push_back({"POSITION", Semantic::generic, pack_positions(pack, mesh, index, source)});
+  std::vector<Vec3d> face_normals;
+  for (const AttributePlan& plan : plans) {
+    const AttributeStream& stream = mesh.attributes[plan.stream];
+    if (!stream.in_group(index.group) || plan.target != kNone) continue;
+    if (stream.semantic == Semantic::normal && face_normals.empty()) face_normals = face_normals_of(mesh, index);
+    columns.push_back({plan.name, stream.semantic, stream_column(mesh, index, plan, face_normals)});
+  }
+  return columns;
+}
+
+Json pack_targets(GltfPack& pack, std::size_t level, const Mesh& mesh, const GroupIndex& index,
+                  const std::vector<AttributePlan>& plans, std::size_t targets) {
+  Json list = Json::array();
+  for (std::size_t t = 0; t < targets; ++t) {
+    Json target = Json::object();
+    for (const AttributePlan& plan : plans) {
+      if (plan.target != t || !mesh.attributes[plan.stream].in_group(index.group)) continue;
+      target[plan.name] = pack_column(pack, level, stream_column(mesh, index, plan, {}), plan.name == "POSITION");
+    }
+    list.push_back(std::move(target));
+  }
+  return list;
 }
 
 }  // namespace
 
-Json pack_primitive(GltfPack& pack, std::size_t level, const Mesh& mesh, std::size_t group,
-                    const std::vector<AttributePlan>& plans, const Json& source) {
-  const GroupIndex index = index_group(mesh, group);
+void drop_geometry_extensions(Json& object, std::vector<std::string>& warnings) {
+  if (!object.contains("extensions") || !object["extensions"].is_object()) return;
+  Json& extensions = object["extensions"];
+  extensions.erase(kDraco);
+  for (const char* name : {"CESIUM_primitive_outline", "EXT_mesh_primitive_edge_visibility", "EXT_mesh_manifold"}) {
+    if (extensions.erase(name) == 0) continue;
+    warn_once(warnings, fmt::format("{} describes the original geometry: left out where that was changed", name));
+  }
+  if (extensions.empty()) object.erase("extensions");
+}
+
+Json pack_primitive(GltfPack& pack, std::size_t level, const Mesh& mesh, const GroupIndex& index,
+                    const std::vector<AttributePlan>& plans, const Json& source, std::vector<std::string>& warnings) {
   if (index.corners.empty()) return nullptr;
   Json primitive = source;
   for (const char* key : {"attributes", "indices", "targets", "mode"}) primitive.erase(key);
-  if (primitive.contains("extensions")) {
-    primitive["extensions"].erase(kDraco);
-    if (primitive["extensions"].empty()) primitive.erase("extensions");
-  }
-  std::vector<NamedColumn> columns{{"POSITION", Semantic::generic, position_column(mesh, index)}};
-  std::vector<Vec3d> face_normals;
-  std::size_t targets = 0;
+  drop_geometry_extensions(primitive, warnings);
+  std::size_t targets = array_member(source, "targets").size();
   for (const AttributePlan& plan : plans) {
-    const AttributeStream& stream = mesh.attributes[plan.stream];
-    if (!stream.in_group(group)) continue;
-    if (plan.target != kNone) {
-      targets = std::max(targets, plan.target + 1);
-      continue;
-    }
-    if (stream.semantic == Semantic::normal && face_normals.empty()) face_normals = face_normals_of(mesh, index);
-    columns.push_back({plan.name, stream.semantic, stream_column(mesh, index, plan, face_normals)});
+    const bool has = plan.target != kNone && mesh.attributes[plan.stream].in_group(index.group);
+    if (has) targets = std::max(targets, plan.target + 1);
   }
-  if (pack.compression() == Compression::draco && targets == 0) {
-    pack_draco(pack, level, index, columns, primitive);
-    if (primitive.contains("indices")) return primitive;
+  std::vector<NamedColumn> columns = plain_columns(pack, mesh, index, plans, source);
+  if (pack.compression() == Compression::draco) {
+    if (targets == 0 && pack_draco(pack, level, index, columns, primitive)) return primitive;
+    warn_once(warnings, targets > 0 ? "Draco holds no morph targets: primitives that have them are not compressed"
+                                    : "Draco could not compress some primitives: they are stored plain");
   }
   Json attributes = Json::object();
   for (NamedColumn& c : columns)
@@ -401,17 +260,7 @@ Json pack_primitive(GltfPack& pack, std::size_t level, const Mesh& mesh, std::si
                                             {"componentType", index.wedges.size() < 65536 ? 5123 : 5125},
                                             {"count", index.corners.size()},
                                             {"type", "SCALAR"}});
-  if (targets == 0) return primitive;
-  Json list = Json::array();
-  for (std::size_t t = 0; t < targets; ++t) {
-    Json target = Json::object();
-    for (const AttributePlan& plan : plans) {
-      if (plan.target != t || !mesh.attributes[plan.stream].in_group(group)) continue;
-      target[plan.name] = pack_column(pack, level, stream_column(mesh, index, plan, {}), plan.name == "POSITION");
-    }
-    list.push_back(std::move(target));
-  }
-  primitive["targets"] = std::move(list);
+  if (targets > 0) primitive["targets"] = pack_targets(pack, level, mesh, index, plans, targets);
   return primitive;
 }
 

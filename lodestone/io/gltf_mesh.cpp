@@ -60,19 +60,26 @@ std::vector<StreamSource> find_sources(const std::vector<PrimitiveSource>& primi
   return sources;
 }
 
+std::size_t components_of(const StreamSource& source) {
+  std::size_t components = 0;
+  for (const Accessor* a : source.of_group) {
+    if (a != nullptr) components = std::max(components, a->components);
+  }
+  return components;
+}
+
 // The stream's type is the primitives' common one; where they differ, values are floats (writing back asks each
 // primitive).
 AttributeStream empty_stream(const StreamSource& source, std::size_t wedges) {
   const AttributeKind kind = attribute_kind(source.name, source.morph);
   const Accessor* first = nullptr;
-  std::size_t components = 0;
+  const std::size_t components = components_of(source);
   bool mixed = false, all = true;
   for (const Accessor* a : source.of_group) {
     all = all && a != nullptr;
     if (a == nullptr) continue;
     if (first == nullptr) first = a;
     mixed = mixed || a->type != first->type || a->normalized != first->normalized;
-    components = std::max(components, a->components);
   }
   ComponentType type = mixed ? ComponentType::float32 : first->type;
   Semantic semantic = kind.semantic;
@@ -189,9 +196,10 @@ Result<Mesh> read_mesh(const Document::Data& data, std::size_t index, Budget& bu
   }
   model.file_triangles += triangles;
   const std::vector<StreamSource> sources = find_sources(*primitives);
-  if (wedges >= kNone || !budget.take(wedges * (1 + sources.size()))) {
-    return fail(ErrorCode::bad_format, "the primitives unfold to an absurd size for a file this small",
-                place(data, "mesh", index));
+  std::uint64_t wedge_bytes = sizeof(Vec3f);
+  for (const StreamSource& source : sources) wedge_bytes += 4 * components_of(source);
+  if (wedges >= kNone || !budget.take(wedges * wedge_bytes)) {
+    return unfolds_too_far(data, "the primitives", place(data, "mesh", index));
   }
   mesh.positions.resize(wedges);
   mesh.triangles.reserve(triangles);

@@ -110,6 +110,12 @@ std::size_t GltfPack::add_accessor(Json accessor) {
   return json_["accessors"].size() - 1;
 }
 
+const Json* GltfPack::find_accessor_json(const Json* index) const {
+  const Json& accessors = array_member(json_, "accessors");
+  const std::uint64_t i = index != nullptr ? as_uint(*index).value_or(accessors.size()) : accessors.size();
+  return i < accessors.size() ? &accessors[static_cast<std::size_t>(i)] : nullptr;
+}
+
 std::string GltfPack::finish() {
   for (const std::size_t view : free_) {  // nobody's: four bytes, so that the indices of the others stay
     json_["bufferViews"][view] = {{"buffer", 0}, {"byteOffset", 0}};
@@ -120,9 +126,11 @@ std::string GltfPack::finish() {
   std::size_t total = 0;
   for (const std::string& bytes : bytes_) total += bytes.size();
   all.reserve(total);
+  for (const std::string& bytes : bytes_) sizes_.push_back(bytes.size());
   for (std::size_t level = bytes_.size(); level-- > 0;) {
     base[level] = all.size();
     all += bytes_[level];
+    std::string().swap(bytes_[level]);
   }
   for (const Place& place : places_) {
     Json& view = json_["bufferViews"][place.view];
@@ -145,12 +153,6 @@ std::string GltfPack::finish() {
     list_extension(json_, "extensionsRequired", kMeshopt);
   }
   return all;
-}
-
-std::vector<std::uint64_t> GltfPack::level_bytes() const {
-  std::vector<std::uint64_t> sizes;
-  for (const std::string& bytes : bytes_) sizes.push_back(bytes.size());
-  return sizes;
 }
 
 }  // namespace lodestone::io

@@ -31,12 +31,14 @@ class GltfPack {
   void free_view(std::size_t view) { free_.push_back(view); }
 
   std::size_t add_accessor(Json accessor);
+  /// The accessor whose index `index` holds; null if it is null or no index.
+  const Json* find_accessor_json(const Json* index) const;
 
   /// Lays out the binary chunk, the coarsest level first, and fills `buffers` and the views' places. Call once, at the
   /// end.
   std::string finish();
-  /// Bytes of each level's own views in the binary chunk.
-  std::vector<std::uint64_t> level_bytes() const;
+  /// Bytes of each level's own views in the binary chunk, after finish().
+  const std::vector<std::uint64_t>& level_bytes() const { return sizes_; }
 
  private:
   struct Place {
@@ -48,7 +50,8 @@ class GltfPack {
 
   Json& json_;
   Compression compression_;
-  std::vector<std::string> bytes_;  // a level
+  std::vector<std::string> bytes_;     // a level, until finish()
+  std::vector<std::uint64_t> sizes_;   // a level, from then on
   std::vector<Place> places_;
   std::vector<std::size_t> free_;
   std::uint64_t fallback_bytes_ = 0;

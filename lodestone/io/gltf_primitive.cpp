@@ -24,11 +24,11 @@ const Json* draco_extension(const Json& primitive) {
 }
 
 Result<Accessor> accessor_member(const Document::Data& data, const Json& object, std::string_view key,
-                                 const std::string& where) {
+                                 const std::string& where, Budget& budget) {
   const std::size_t count = array_member(data.json, "accessors").size();
   const Result<std::size_t> index = index_member(object, key, count, "accessors", where);
   if (!index) return fail(index.error());
-  return find_accessor(data, *index);
+  return find_accessor(data, *index, &budget);
 }
 
 // What Semantic demands of the number of components; 0 = up to 4.
@@ -54,13 +54,13 @@ std::pair<std::size_t, std::size_t> components_allowed(const std::string& name, 
 }
 
 Result<NamedAccessors> read_named(const Document::Data& data, const Json& attributes, bool morph,
-                                  const std::string& where, const std::vector<std::string>& skip,
+                                  const std::string& where, const std::vector<std::string>& skip, Budget& budget,
                                   std::vector<std::string>& warnings) {
   NamedAccessors out;
   if (!attributes.is_object()) return fail(ErrorCode::bad_format, "attributes are not an object", where);
   for (const auto& [name, index] : attributes.items()) {
     if (std::find(skip.begin(), skip.end(), name) != skip.end()) continue;
-    Result<Accessor> accessor = accessor_member(data, attributes, name, where);
+    Result<Accessor> accessor = accessor_member(data, attributes, name, where, budget);
     if (!accessor) return fail(accessor.error());
     const bool positions = name == "POSITION" && !morph;
     const auto [least, most] = positions ? std::pair<std::size_t, std::size_t>{3, 3} : components_allowed(name, morph);
@@ -89,9 +89,9 @@ Result<std::shared_ptr<const DracoMesh>> decode_view(const Document::Data& data,
     const ByteSpan bytes = data.views[*view].bytes;
     Result<DracoMesh> mesh = decode_draco({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, where);
     if (!mesh) return fail(mesh.error());
-    if (!budget.take(mesh->points * mesh->attributes.size() + mesh->indices.size())) {
-      return fail(ErrorCode::bad_format, "the Draco streams unfold to an absurd size for a file this small", where);
-    }
+    std::uint64_t unfolded = mesh->indices.size() * sizeof(std::uint32_t);
+    for (const DracoAttribute& a : mesh->attributes) unfolded += a.values->size();
+    if (!budget.take(unfolded)) return unfolds_too_far(data, "the Draco streams", where);
     slot = std::make_shared<const DracoMesh>(std::move(*mesh));
   }
   return slot;
@@ -151,23 +151,20 @@ Result<NamedAccessors> read_draco_attributes(const Document::Data& data, const J
 Result<std::vector<std::uint32_t>> read_indices(const Document::Data& data, const Json& primitive, std::size_t vertices,
                                                 const std::string& where, Budget& budget) {
   std::vector<std::uint32_t> out;
-  const auto absurd = [&] {
-    return fail(ErrorCode::bad_format, "the primitives share accessors so often that they unfold to an absurd size",
-                where);
-  };
+  constexpr std::size_t kBytesEach = sizeof(std::uint32_t) + sizeof(Triangle);  // a strip has a triangle a corner
   if (member(primitive, "indices") == nullptr) {
-    if (!budget.take(vertices)) return absurd();
+    if (!budget.take(vertices * kBytesEach)) return unfolds_too_far(data, "the primitives", where);
     out.resize(vertices);
     for (std::size_t i = 0; i < vertices; ++i) out[i] = static_cast<std::uint32_t>(i);
     return out;
   }
-  const Result<Accessor> accessor = accessor_member(data, primitive, "indices", where);
+  const Result<Accessor> accessor = accessor_member(data, primitive, "indices", where, budget);
   if (!accessor) return fail(accessor.error());
   if (accessor->components != 1 || accessor->normalized || accessor->type == ComponentType::float32 ||
       accessor->type == ComponentType::int8 || accessor->type == ComponentType::int16) {
     return fail(ErrorCode::bad_format, "is used for indices, but is not SCALAR of an unsigned type", accessor->where);
   }
-  if (!budget.take(accessor->count)) return absurd();
+  if (!budget.take(accessor->count * kBytesEach)) return unfolds_too_far(data, "the primitives", where);
   out.resize(accessor->count);
   gather_bits(*accessor, {}, accessor->count, out.data(), 1, {});
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -255,9 +252,9 @@ Result<void> check_counts(const PrimitiveSource& source) {
 }
 
 Result<void> read_targets(const Document::Data& data, const Json& primitive, const std::string& where,
-                          PrimitiveSource& source, std::vector<std::string>& warnings) {
+                          PrimitiveSource& source, Budget& budget, std::vector<std::string>& warnings) {
   for (const Json& target : array_member(primitive, "targets")) {
-    Result<NamedAccessors> list = read_named(data, target, true, where, {}, warnings);
+    Result<NamedAccessors> list = read_named(data, target, true, where, {}, budget, warnings);
     if (!list) return fail(list.error());
     source.targets.push_back(std::move(*list));
   }
@@ -296,7 +293,7 @@ Result<PrimitiveSource> read_primitive(const Document::Data& data, const Json& p
     if (!list) return fail(list.error());
     out.attributes = std::move(*list);
   }
-  Result<NamedAccessors> plain = read_named(data, *attributes, false, where, done, warnings);
+  Result<NamedAccessors> plain = read_named(data, *attributes, false, where, done, budget, warnings);
   if (!plain) return fail(plain.error());
   for (auto& entry : *plain) out.attributes.push_back(std::move(entry));
 
@@ -305,13 +302,13 @@ Result<PrimitiveSource> read_primitive(const Document::Data& data, const Json& p
   if (positions == out.attributes.end()) return out;  // legal, draws nothing
   out.positions = std::move(positions->second);
   out.attributes.erase(positions);
-  if (const auto good = read_targets(data, primitive, where, out, warnings); !good) return fail(good.error());
+  if (const auto good = read_targets(data, primitive, where, out, budget, warnings); !good) return fail(good.error());
   if (const auto good = check_counts(out); !good) return fail(good.error());
 
   std::vector<std::uint32_t> indices;
   if (draco != nullptr) {
-    if (!budget.take(draco->indices.size())) {
-      return fail(ErrorCode::bad_format, "the primitives share a Draco stream absurdly often", where);
+    if (!budget.take(draco->indices.size() * (sizeof(std::uint32_t) + sizeof(Triangle) / 3))) {
+      return unfolds_too_far(data, "the primitives", where);
     }
     indices = draco->indices;
   } else {

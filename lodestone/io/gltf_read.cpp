@@ -43,9 +43,8 @@ void warn_of_required(const Document::Data& data, std::vector<std::string>& warn
   }
 }
 
-Result<void> read_meshes(const Document::Data& data, Model& model, const Task& task) {
+Result<void> read_meshes(const Document::Data& data, Model& model, Budget& budget, const Task& task) {
   const std::size_t count = array_member(data.json, "meshes").size();
-  Budget budget{data.file_bytes * 64 + 4096};
   DracoCache cache;
   for (std::size_t i = 0; i < count; ++i) {
     const Task part = task.part(1.0 / static_cast<double>(count));
@@ -70,17 +69,21 @@ Result<Model> read_document(std::string bytes, std::string name, const std::file
   if (!loaded) return fail(loaded.error());
   Document::Data& data = **loaded;
   warn_of_required(data, model.warnings);
-  if (const Result<void> ok = read_meshes(data, model, task.part(0.7)); !ok) return fail(ok.error());
-  if (const Result<void> ok = read_scene(data, model); !ok) return fail(ok.error());
+  Budget budget = unfold_budget(data.file_bytes);
+  if (const Result<void> ok = read_meshes(data, model, budget, task.part(0.7)); !ok) return fail(ok.error());
+  if (const Result<void> ok = read_scene(data, model, budget); !ok) return fail(ok.error());
   if (model.instances.empty()) {
     return fail(ErrorCode::empty, "has no triangles: the scene draws no mesh", data.name, "is it the right file?");
   }
   model.materials = read_materials(data);
   for (Mesh& mesh : model.meshes) {
     data.fingerprints.push_back(fingerprint(mesh));  // before anything is mended: a mended mesh is written anew
+    const std::string& called = mesh.name.empty() ? data.name : mesh.name;
+    if (const std::uint64_t bad = zero_non_finite(mesh); bad > 0) {
+      model.warnings.push_back(fmt::format("{}: {} attribute values were not finite: set to zero", called, bad));
+    }
     if (normalize_weights(mesh)) {
-      model.warnings.push_back(
-          fmt::format("{}: skin weights did not sum to one: scaled", mesh.name.empty() ? data.name : mesh.name));
+      model.warnings.push_back(fmt::format("{}: skin weights did not sum to one: scaled", called));
     }
   }
   model.document = std::make_shared<const Document>(std::move(*loaded));
@@ -110,18 +113,31 @@ std::uint64_t fingerprint(const Mesh& mesh) {
   return hash;
 }
 
+namespace {
+
+tl::unexpected<Error> no_memory(const std::string& name) {
+  return fail(ErrorCode::out_of_memory, "needs more memory than there is", name,
+              "use a machine with more, or a smaller model");
+}
+
+}  // namespace
+
 Result<Model> read_gltf_bytes(std::string bytes, std::string name, Task task) {
   try {
     return read_document(std::move(bytes), name, {}, task);
   } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::out_of_memory, "needs more memory than there is", name);
+    return no_memory(name);
   }
 }
 
 Result<Model> read_gltf(const std::filesystem::path& path, Task task) {
-  Result<std::string> bytes = read_file(path);
-  if (!bytes) return fail(bytes.error());
-  return read_document(std::move(*bytes), path.string(), path, task);
+  try {
+    Result<std::string> bytes = read_file(path);
+    if (!bytes) return fail(bytes.error());
+    return read_document(std::move(*bytes), path.string(), path, task);
+  } catch (const std::bad_alloc&) {
+    return no_memory(path.string());
+  }
 }
 
 }  // namespace lodestone::io

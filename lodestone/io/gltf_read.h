@@ -17,7 +17,7 @@ namespace lodestone::io {
 /// EXT_meshopt_compression, KHR_mesh_quantization and EXT_mesh_gpu_instancing are decoded. UVs start at the top
 /// (Model::uv_origin_top). Memory: the file, the meshes, and one mesh more while it is welded.
 /// Errors: cannot_read, bad_format (naming accessor, buffer view, primitive or node), unsupported (glTF 1, an extension
-/// that this build lacks), empty (no triangle drawn), cancelled.
+/// that this build lacks), empty (no triangle drawn), out_of_memory, cancelled.
 Result<Model> read_gltf(const std::filesystem::path& path, Task task = {});
 
 /// The same from bytes in memory; `name` stands in errors. Names of other files in it are refused: only a GLB chunk and

@@ -81,6 +81,20 @@ bool normalize_weights(Mesh& mesh) {
   return changed;
 }
 
+std::uint64_t zero_non_finite(Mesh& mesh) {
+  std::uint64_t count = 0;
+  for (AttributeStream& stream : mesh.attributes) {
+    auto* values = std::get_if<std::vector<float>>(&stream.values);
+    if (values == nullptr) continue;
+    for (float& value : *values) {
+      if (std::isfinite(value)) continue;
+      value = 0;
+      ++count;
+    }
+  }
+  return count;
+}
+
 void repair_accessors(const Document::Data& data, Json& json) {
   const std::size_t accessors = array_member(json, "accessors").size(),
                     views = array_member(json, "bufferViews").size();

@@ -11,6 +11,9 @@ namespace lodestone::io {
 /// if any was off by more than a thousandth.
 bool normalize_weights(Mesh& mesh);
 
+/// Attribute values that are not finite become zero; returns their number.
+std::uint64_t zero_non_finite(Mesh& mesh);
+
 /// Declared minima and maxima of float accessors that are not those of their values; byteStride on views of accessors
 /// that must be tight (skins, animations) where it says nothing.
 void repair_accessors(const Document::Data& data, Json& json);

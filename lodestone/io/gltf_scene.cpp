@@ -29,7 +29,8 @@ Result<Mat4d> local_transform(const Json& node, const std::string& where) {
 }
 
 // Transforms of EXT_mesh_gpu_instancing, one identity for a node without it.
-Result<std::vector<Mat4d>> instancing(const Document::Data& data, const Json& node, const std::string& where) {
+Result<std::vector<Mat4d>> instancing(const Document::Data& data, const Json& node, const std::string& where,
+                                      Budget& budget) {
   const Json* extensions = member(node, "extensions");
   const Json* extension = extensions != nullptr ? member(*extensions, kInstancing) : nullptr;
   const Json* attributes = extension != nullptr ? member(*extension, "attributes") : nullptr;
@@ -46,7 +47,7 @@ Result<std::vector<Mat4d>> instancing(const Document::Data& data, const Json& no
     const Result<std::size_t> index =
         index_member(*attributes, part.name, array_member(data.json, "accessors").size(), "accessors", where);
     if (!index) return fail(index.error());
-    const Result<Accessor> accessor = find_accessor(data, *index);
+    const Result<Accessor> accessor = find_accessor(data, *index, &budget);
     if (!accessor) return fail(accessor.error());
     const bool fits = accessor->components == part.components && (count == 0 || accessor->count == count);
     if (!fits) return fail(ErrorCode::bad_format, "its instances have attributes that do not fit together", where);
@@ -54,6 +55,7 @@ Result<std::vector<Mat4d>> instancing(const Document::Data& data, const Json& no
     part.values.resize(count * part.components);
     gather(*accessor, {}, count, part.values.data(), part.components, 0, {});
   }
+  if (!budget.take(count * (sizeof(Mat4d) + 10 * sizeof(float)))) return unfolds_too_far(data, "the instances", where);
   std::vector<Mat4d> out(count);
   for (std::size_t i = 0; i < count; ++i) {
     const auto at = [&](std::size_t p, std::size_t k) {
@@ -69,8 +71,12 @@ Result<std::vector<Mat4d>> instancing(const Document::Data& data, const Json& no
 // Depth first without recursion; a node met twice makes the graph no tree.
 class SceneWalk {
  public:
-  SceneWalk(Document::Data& data, Model& model)
-      : data_(data), model_(model), nodes_(array_member(data.json, "nodes")), seen_(nodes_.size(), false) {}
+  SceneWalk(Document::Data& data, Model& model, Budget& budget)
+      : data_(data),
+        model_(model),
+        budget_(budget),
+        nodes_(array_member(data.json, "nodes")),
+        seen_(nodes_.size(), false) {}
 
   Result<void> walk(const std::vector<std::size_t>& roots) {
     for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack_.push_back({*root, Mat4d{}});
@@ -102,9 +108,11 @@ class SceneWalk {
     if (member(node, "mesh") != nullptr) {
       const Result<std::size_t> mesh = index_member(node, "mesh", model_.meshes.size(), "meshes", where);
       if (!mesh) return fail(mesh.error());
-      const Result<std::vector<Mat4d>> placings = instancing(data_, node, where);
+      const Result<std::vector<Mat4d>> placings = instancing(data_, node, where, budget_);
       if (!placings) return fail(placings.error());
       if (!model_.meshes[*mesh].triangles.empty()) {
+        const std::uint64_t each = sizeof(Instance) + string_member(node, "name").size();
+        if (!budget_.take(placings->size() * each)) return unfolds_too_far(data_, "the instances", where);
         for (const Mat4d& placing : *placings) {
           Instance instance;
           instance.mesh = static_cast<std::uint32_t>(*mesh);
@@ -128,6 +136,7 @@ class SceneWalk {
 
   Document::Data& data_;
   Model& model_;
+  Budget& budget_;
   const Json& nodes_;
   std::vector<bool> seen_;
   std::vector<Visit> stack_;
@@ -173,10 +182,10 @@ Result<std::vector<std::size_t>> find_roots(const Document::Data& data) {
 
 }  // namespace
 
-Result<void> read_scene(Document::Data& data, Model& model) {
+Result<void> read_scene(Document::Data& data, Model& model, Budget& budget) {
   const Result<std::vector<std::size_t>> roots = find_roots(data);
   if (!roots) return fail(roots.error());
-  return SceneWalk(data, model).walk(*roots);
+  return SceneWalk(data, model, budget).walk(*roots);
 }
 
 }  // namespace lodestone::io

@@ -31,7 +31,8 @@ Result<std::string> decode_meshopt(std::span<const std::byte> compressed, std::s
     return bad(fmt::format("count {} is no multiple of 3", count));
   }
   if (count > compressed.size() * kMaxRatio || count * stride > compressed.size() * kMaxRatio) {
-    return bad(fmt::format("{} elements of {} bytes cannot be in {} compressed bytes", count, stride, compressed.size()));
+    return bad(
+        fmt::format("{} elements of {} bytes cannot be in {} compressed bytes", count, stride, compressed.size()));
   }
   const bool oct = filter == MeshoptFilter::octahedral, quat = filter == MeshoptFilter::quaternion;
   if (filter != MeshoptFilter::none && (!attributes || (oct && stride != 4 && stride != 8) || (quat && stride != 8))) {
@@ -61,8 +62,8 @@ Result<std::string> decode_meshopt(std::span<const std::byte> compressed, std::s
 std::string encode_meshopt_vertices(std::span<const std::byte> vertices, std::size_t stride) {
   const std::size_t count = vertices.size() / stride;
   std::string out(meshopt_encodeVertexBufferBound(count, stride), '\0');
-  out.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(out.data()), out.size(), vertices.data(), count,
-                                        stride));
+  out.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(out.data()), out.size(), vertices.data(),
+                                        count, stride));
   return out;
 }
 

@@ -40,7 +40,7 @@ bool PlyValues::next_count(const PlyProperty& list, std::uint64_t& count) {
   const std::uint64_t each = is_text() ? 2 : size_of(list.type);
   const std::uint64_t left = bytes_.remaining() + (is_text() ? 1 : 0);
   if (value > static_cast<double>(left / each)) {
-    complaint_ = fmt::format("a list of {} items needs {}, the file has {} left", static_cast<std::uint64_t>(value),
+    complaint_ = fmt::format("a list of {} items needs {}, the file has {} left", fmt::format("{:.0f}", value),
                              size_text(value * static_cast<double>(each)), size_text(static_cast<double>(left)));
     return false;
   }

@@ -86,9 +86,10 @@ Result<DataUri> decode_data_uri(std::string_view uri, const std::string& where) 
   const std::size_t semicolon = head.find(';');
   for (const char c : head.substr(0, semicolon)) out.mime.push_back(lower(c));
   constexpr std::string_view base64 = ";base64";
-  const bool is_base64 = head.size() >= base64.size() &&
-                         std::equal(base64.begin(), base64.end(), head.end() - static_cast<std::ptrdiff_t>(base64.size()),
-                                    [](char a, char b) { return a == lower(b); });
+  const bool is_base64 =
+      head.size() >= base64.size() &&
+      std::equal(base64.begin(), base64.end(), head.end() - static_cast<std::ptrdiff_t>(base64.size()),
+                 [](char a, char b) { return a == lower(b); });
   if (!is_base64) {
     out.bytes = percent_decode(uri.substr(comma + 1));
     return out;

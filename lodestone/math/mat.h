@@ -51,6 +51,26 @@ struct Mat4d {
     return std::sqrt(longest * longest + (skew > 1e-12 * longest * longest ? 2 * skew : 0.0));
   }
 
+  /// The inverse of the upper left 3x3, without translation; identity where that is singular.
+  constexpr Mat4d inverse3() const {
+    const Vec3d x{m[0], m[1], m[2]}, y{m[4], m[5], m[6]}, z{m[8], m[9], m[10]};
+    const double d = determinant3();
+    Mat4d out;
+    if (!(d < 0 || d > 0)) return out;
+    const Vec3d rows[3] = {cross(y, z) / d, cross(z, x) / d, cross(x, y) / d};
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t column = 0; column < 3; ++column) out.m[column * 4 + row] = rows[row][column];
+    }
+    return out;
+  }
+  /// Without translation and perspective.
+  constexpr Mat4d linear() const {
+    Mat4d out = *this;
+    out.m[12] = out.m[13] = out.m[14] = out.m[3] = out.m[7] = out.m[11] = 0;
+    out.m[15] = 1;
+    return out;
+  }
+
   static constexpr Mat4d translation(Vec3d t) {
     Mat4d out;
     out.m[12] = t.x;

@@ -136,7 +136,7 @@ class Batch {
     first_[size_] = first;
     second_[size_] = second;
     place_[size_] = out_.size();
-    out_.push_back({v, w, {}, 0, 0});
+    out_.push_back({v, w, {}, 0});
     if (++size_ == 4) flush();
   }
 
@@ -169,7 +169,6 @@ class Batch {
       Candidate& candidate = out_[place_[i]];
       candidate.position = {x[i], y[i], z[i]};
       candidate.cost = p.cost[i];
-      candidate.weight = p.weight[i];
     }
     size_ = 0;
   }
@@ -199,7 +198,7 @@ void add_candidate(const State& state, std::uint32_t v, const Spoke& spoke, Batc
   }
   const std::uint32_t kept = cv < cw ? w : v, removed = cv < cw ? v : w;  // the higher class stays
   const Placement p = place_at(state.quadrics[kept], state.quadrics[removed]);
-  out.push_back({kept, removed, p.position, p.cost, p.weight});
+  out.push_back({kept, removed, p.position, p.cost});
 }
 
 }  // namespace

@@ -36,7 +36,6 @@ template <class F>
 struct EdgePlacement {
   Vec<F> position;  ///< relative to v
   F cost;           ///< sum of twice the area times squared distance, over the triangles around
-  F weight;         ///< sum of twice the areas: cost / weight is a mean square distance
 };
 
 template <class F>
@@ -96,8 +95,7 @@ EdgePlacement<F> place_freely(const EdgeTerms<F>& in) {
   const Sym3<F>& a1 = in.a1;
   const Vec<F>& e = in.edge;
   Sym3<F> a{a0.xx + a1.xx, a0.xy + a1.xy, a0.xz + a1.xz, a0.yy + a1.yy, a0.yz + a1.yz, a0.zz + a1.zz};
-  const F weight = a.xx + a.yy + a.zz;
-  const F pull = weight * 1e-6F + 1e-30F;
+  const F pull = (a.xx + a.yy + a.zz) * 1e-6F + 1e-30F;
   a.xx += pull;
   a.yy += pull;
   a.zz += pull;
@@ -116,12 +114,12 @@ EdgePlacement<F> place_freely(const EdgeTerms<F>& in) {
   x = {select(near, x.x, middle.x), select(near, x.y, middle.y), select(near, x.z, middle.z)};
   const Vec<F> y{x.x - e.x, x.y - e.y, x.z - e.z};
   const F cost = dot(x, times(a0, x)) + dot(y, times(a1, y));
-  return {x, select(cost > 0.0F, cost, cost - cost), weight};  // +0, never -0: bins are made of bits
+  return {x, select(cost > 0.0F, cost, cost - cost)};  // +0, never -0: bins are made of bits
 }
 
 struct Placement {
   Vec3f position;
-  float cost = 0, weight = 0;
+  float cost = 0;
 };
 
 inline Sym3<float> matrix_of(const Quadric& q) { return {q.xx, q.xy, q.xz, q.yy, q.yz, q.zz}; }
@@ -140,7 +138,7 @@ inline Placement place_freely(const Quadric& v, const Quadric& w, const Triangle
   const Vec3f e = w.position - v.position;
   terms.edge = {e.x, e.y, e.z};
   const EdgePlacement<float> p = place_freely(terms);
-  return {{v.position.x + p.position.x, v.position.y + p.position.y, v.position.z + p.position.z}, p.cost, p.weight};
+  return {{v.position.x + p.position.x, v.position.y + p.position.y, v.position.z + p.position.z}, p.cost};
 }
 
 /// `kept` stays where it is.
@@ -149,7 +147,7 @@ inline Placement place_at(const Quadric& kept, const Quadric& removed) {
   const Vec3f e = kept.position - removed.position;
   const Vec<float> d{e.x, e.y, e.z};
   const float cost = dot(d, times(a, d));
-  return {kept.position, cost > 0 ? cost : 0, a.xx + a.yy + a.zz};
+  return {kept.position, cost > 0 ? cost : 0};
 }
 
 }  // namespace lodestone::simplify::detail

@@ -101,12 +101,15 @@ std::vector<std::uint32_t> space_filling_order(const Mesh& mesh, const Box3f& bo
 }
 
 // Center of the box; scale = the power of two nearest below the mean edge length, so that areas are near one.
-void choose_frame(State& state, const Mesh& mesh, const Box3f& box) {
+void choose_frame(State& state, const Mesh& mesh, const Box3f& box, const Mat4d& metric) {
+  const bool regular = std::isfinite(metric.determinant3()) && metric.determinant3() != 0;
+  state.metric = regular ? metric.linear() : Mat4d{};
+  state.metric_inverse = state.metric.inverse3();
   state.center = to_double(box.min) * 0.5 + to_double(box.max) * 0.5;
   double sum = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Triangle v = mesh.vertices_of(t);
-    sum += length(to_double(mesh.positions[v[0]]) - to_double(mesh.positions[v[1]]));
+    sum += length(state.metric.direction(to_double(mesh.positions[v[0]]) - to_double(mesh.positions[v[1]])));
   }
   const double mean = sum / static_cast<double>(std::max<std::size_t>(1, mesh.triangles.size()));
   int exponent = 0;
@@ -141,7 +144,7 @@ Result<State> make_state(const Mesh& mesh, const EdgeCollapseOptions& options, c
   Box3f box;
   for (const Vec3f p : mesh.positions) box.add(p);
   if (box.empty()) box.add(Vec3f{});
-  choose_frame(state, mesh, box);
+  choose_frame(state, mesh, box, options.metric);
   state.original = space_filling_order(mesh, box, task);
   if (task.cancelled()) return cancelled_error("edge collapse");
 
@@ -153,7 +156,7 @@ Result<State> make_state(const Mesh& mesh, const EdgeCollapseOptions& options, c
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t v = state.original[i];
       place[v] = static_cast<std::uint32_t>(i);
-      state.positions[i] = to_float((to_double(mesh.positions[v]) - state.center) * inverse);
+      state.positions[i] = to_float(state.metric.direction(to_double(mesh.positions[v]) - state.center) * inverse);
     }
   });
   const bool knows_wedges = !mesh.wedge_vertex.empty() || !mesh.attributes.empty();

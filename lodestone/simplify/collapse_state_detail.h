@@ -43,15 +43,16 @@ struct Step {
   std::uint32_t kept, removed;  ///< vertices of the input mesh
   Vec3f position;               ///< of `kept`, working frame; unused when !moved
   float cost;
-  float error;  ///< root mean square distance to the planes around, working frame
+  float error;  ///< largest distance of the new position to the planes around, working frame
   std::uint32_t first_wedge, wedge_count;
   std::uint32_t faces;
   bool moved;
 };
 
 struct State {
-  // The frame: position = center + scale * working position, scale a power of two near the mean edge length.
+  // The frame: working position = metric * (position - center) / scale, scale a power of two near the mean edge length.
   Vec3d center;
+  Mat4d metric, metric_inverse;
   double scale = 1;
 
   // The mesh as it is between passes; vertices keep a space-filling order so that neighbours are near in memory.
@@ -112,11 +113,11 @@ void compute_quadrics(State& state, const Task& task);
 /// Quadric of an interior vertex from its star as it is now, amid a pass.
 Quadric current_quadric(const State& state, std::uint32_t v);
 
-/// An edge that may collapse, and how. 28 bytes.
+/// An edge that may collapse, and how. 24 bytes.
 struct Candidate {
   std::uint32_t kept, removed;
   Vec3f position;
-  float cost, weight;  ///< see Placement
+  float cost;  ///< see Placement
 };
 
 /// All candidates whose lower vertex lies in [begin, end), from quadrics up to date. Edges that can never collapse are
@@ -150,6 +151,7 @@ class Sweeper {
   bool flips(const std::vector<Corner>& corners, std::uint32_t self, std::uint32_t other, Vec3f to) const;
   bool pair_wedges(const Candidate& candidate, bool moved);
   std::uint32_t nearest_normal(std::uint32_t wedge, std::uint32_t chart) const;
+  float plane_distance(const Candidate& candidate) const;
   void commit(const Candidate& candidate, bool moved, std::size_t first_merge);
 
   State& state_;

@@ -45,7 +45,6 @@ bool Sweeper::refresh(Candidate& candidate) const {
   }
   candidate.position = placement.position;
   candidate.cost = placement.cost;
-  candidate.weight = placement.weight;
   return true;
 }
 
@@ -158,6 +157,22 @@ bool Sweeper::pair_wedges(const Candidate& candidate, bool moved) {
   });
 }
 
+// How far the new position is from the planes of the triangles around, at most: a mean over areas would hide that a
+// thin tip is cut.
+float Sweeper::plane_distance(const Candidate& candidate) const {
+  float most = 0;
+  const auto look = [&](const std::vector<Corner>& corners, std::uint32_t self) {
+    const Vec3f p = state_.positions[self];
+    for (const Corner& c : corners) {
+      const TriangleNormal t = triangle_normal(p, state_.positions[c.a], state_.positions[c.b]);
+      most = std::max(most, std::abs(dot(t.n, candidate.position - p)) * t.inverse_length);
+    }
+  };
+  look(kept_corners_, candidate.kept);
+  look(removed_corners_, candidate.removed);
+  return most;
+}
+
 void Sweeper::commit(const Candidate& candidate, bool moved, std::size_t first_merge) {
   const std::uint32_t k = candidate.kept, r = candidate.removed;
   const Vec3f from = state_.positions[k], edge = state_.positions[r] - from;
@@ -198,8 +213,8 @@ bool Sweeper::try_collapse(Candidate candidate, float max_cost) {
   pairs_.clear();
   kept_wedges_.clear();
   if (!state_.wedges.empty() && !pair_wedges(candidate, moved)) return false;
+  const float error = plane_distance(candidate);
   commit(candidate, moved, first_merge);
-  const float error = candidate.weight > 0 ? std::sqrt(candidate.cost / candidate.weight) : 0;
   steps_.push_back({state_.original[k], state_.original[r], candidate.position, candidate.cost, error,
                     static_cast<std::uint32_t>(first_merge), static_cast<std::uint32_t>(merges_.size() - first_merge),
                     static_cast<std::uint32_t>(shared_), moved});

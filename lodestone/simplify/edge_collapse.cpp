@@ -88,7 +88,8 @@ CollapseLog make_log(const Mesh& mesh, State& state, Run run) {
     c.kept = step.kept;
     c.removed = step.removed;
     c.kept_before = current[step.kept];
-    c.position = step.moved ? to_float(to_double(step.position) * state.scale + state.center) : c.kept_before;
+    const Vec3d moved = state.metric_inverse.direction(to_double(step.position) * state.scale) + state.center;
+    c.position = step.moved ? to_float(moved) : c.kept_before;
     error = std::max(error, static_cast<double>(step.error) * state.scale);
     c.error = static_cast<float>(error);
     c.first_wedge = step.first_wedge;

@@ -11,16 +11,20 @@
 #include "lodestone/base/task.h"
 #include "lodestone/core/collapse_log.h"
 #include "lodestone/core/mesh.h"
+#include "lodestone/math/mat.h"
 
 namespace lodestone::simplify {
 
 struct EdgeCollapseOptions {
   std::size_t target_triangles = 0;  ///< stop at or below this count; 0 = no target
   double max_error =
-      std::numeric_limits<double>::infinity();  ///< stop before an estimated error above this, model units
+      std::numeric_limits<double>::infinity();  ///< stop before an estimated error above this, units of `metric`
   bool keep_border = false;                     ///< no vertex of an open border moves or vanishes
   std::vector<std::uint8_t> locked;             ///< one a vertex, non-zero = stays; empty = none
-  bool record_log = false;                      ///< fill EdgeCollapseResult::log
+  /// Linear map from mesh space to the space where costs and errors are judged: a mesh that is drawn stretched must be
+  /// simplified as it is seen. Its translation is ignored; a singular one counts as identity.
+  Mat4d metric;
+  bool record_log = false;  ///< fill EdgeCollapseResult::log
 };
 
 enum class StopReason { reached_target, error_limit, no_legal_collapse };
@@ -38,7 +42,7 @@ struct LockCounts {
 struct EdgeCollapseResult {
   Mesh mesh;
   std::vector<std::uint32_t> origin;  ///< for each output triangle, the input triangle that it descends from
-  double estimated_error = 0;         ///< model units; the measured one comes from `measure`
+  double estimated_error = 0;         ///< units of `metric`; the measured one comes from `measure`
   StopReason stop = StopReason::no_legal_collapse;
   LockCounts locked;
   std::optional<CollapseLog> log;  ///< with record_log
