@@ -1,6 +1,7 @@
 #include "lodestone/io/gltf_fresh_detail.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 namespace lodestone::io {
@@ -77,6 +78,19 @@ void add_fresh_materials(const Model& model, Json& json, GltfPack& pack) {
     if (material.base_color[3] < 1) out["alphaMode"] = "BLEND";
     json["materials"].push_back(std::move(out));
   }
+}
+
+void use_untextured_material(Json& json, Json& primitive) {
+  if (!primitive.contains("material") || primitive["attributes"].contains("TEXCOORD_0")) return;
+  Json twin = json["materials"][primitive["material"].get<std::size_t>()];
+  if (twin["pbrMetallicRoughness"].erase("baseColorTexture") == 0) return;
+  Json& materials = json["materials"];
+  auto found = std::find(materials.begin(), materials.end(), twin);
+  if (found == materials.end()) {
+    materials.push_back(twin);
+    found = std::prev(materials.end());
+  }
+  primitive["material"] = static_cast<std::size_t>(found - materials.begin());
 }
 
 }  // namespace lodestone::io

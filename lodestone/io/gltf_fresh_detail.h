@@ -12,4 +12,7 @@ namespace lodestone::io {
 Json make_fresh_document(const Model& model);
 void add_fresh_materials(const Model& model, Json& json, GltfPack& pack);
 
+/// A primitive without TEXCOORD_0 must not have a material with a texture: it gets that material's twin without.
+void use_untextured_material(Json& json, Json& primitive);
+
 }  // namespace lodestone::io

@@ -20,7 +20,8 @@ std::vector<AttributePlan> plan_attributes(const Mesh& mesh, bool named, bool fl
 Json pack_primitive(GltfPack& pack, std::size_t level, const Mesh& mesh, const GroupIndex& index,
                     const std::vector<AttributePlan>& plans, const Json& source, std::vector<std::string>& warnings);
 
-/// Takes extensions out of a mesh or primitive whose content is the old geometry (outlines, manifold merges), and tells.
+/// Takes extensions out of a mesh or primitive whose content is the old geometry (outlines, manifold merges), and
+/// tells.
 void drop_geometry_extensions(Json& object, std::vector<std::string>& warnings);
 
 }  // namespace lodestone::io

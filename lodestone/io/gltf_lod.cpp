@@ -31,10 +31,20 @@ bool targets(const Json& channel, std::size_t node, bool weights) {
   return (string_member(*target, "path") == "weights") == weights;
 }
 
+// KHR_animation_pointer names a node's property by a path.
+bool points_at(const Json& channel, std::size_t node) {
+  const Json* target = member(channel, "target");
+  const Json* extensions = target != nullptr ? member(*target, "extensions") : nullptr;
+  const Json* pointer = extensions != nullptr ? member(*extensions, "KHR_animation_pointer") : nullptr;
+  return pointer != nullptr && string_member(*pointer, "pointer").starts_with(fmt::format("/nodes/{}/", node));
+}
+
 NodeRole role_of(Json& json, std::size_t node) {
   NodeRole role;
   each_channel(json, [&](const Json& channels) {
-    for (const Json& c : channels) role.transform_animated = role.transform_animated || targets(c, node, false);
+    for (const Json& c : channels) {
+      role.transform_animated = role.transform_animated || targets(c, node, false) || points_at(c, node);
+    }
   });
   for (const Json& skin : array_member(json, "skins")) {
     for (const Json& joint : array_member(skin, "joints")) {
@@ -87,6 +97,9 @@ std::size_t choose_holder(Json& json, std::size_t node) {
     old["extensions"].erase(kInstancing);
     if (old["extensions"].empty()) old.erase("extensions");
   }
+  if (old.contains("extensions") && old["extensions"].erase(kMsftLod) > 0 && old["extensions"].empty()) {
+    old.erase("extensions");  // levels of an earlier run: their mesh has moved
+  }
   const std::size_t index = json["nodes"].size();
   old["children"].push_back(index);
   json["nodes"].push_back(std::move(leaf));
@@ -126,6 +139,9 @@ void add_node_levels(Json& json, std::size_t node, const std::vector<std::size_t
     json["nodes"].push_back(std::move(coarser));
   }
   Json& carrier = json["nodes"][holder];
+  if (const Json* old = member(carrier, "extensions"); old != nullptr && old->contains(kMsftLod)) {
+    warnings.push_back(fmt::format("node {} had levels of its own: replaced by the new ones", node));
+  }
   carrier["extensions"][kMsftLod] = {{"ids", ids}};
   if (!coverage.empty()) {
     if (!carrier.contains("extras") || carrier["extras"].is_object()) {
@@ -135,6 +151,14 @@ void add_node_levels(Json& json, std::size_t node, const std::vector<std::size_t
     }
   }
   move_weight_channels(json, node, holder, ids);
+}
+
+void detach_weight_channels(Json& json, std::size_t node) {
+  each_channel(json, [&](Json& channels) {
+    for (Json& channel : channels) {
+      if (targets(channel, node, true)) channel["target"].erase("node");
+    }
+  });
 }
 
 }  // namespace lodestone::io

@@ -14,4 +14,7 @@ namespace lodestone::io {
 void add_node_levels(Json& json, std::size_t node, const std::vector<std::size_t>& level_meshes,
                      const std::vector<double>& coverage, std::vector<std::string>& warnings);
 
+/// Weight animations of a node that lost its mesh come to nothing: their channels name no node any more.
+void detach_weight_channels(Json& json, std::size_t node);
+
 }  // namespace lodestone::io

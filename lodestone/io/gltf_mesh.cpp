@@ -133,6 +133,7 @@ Result<void> check_finite(const Mesh& mesh, std::size_t first, const PrimitiveSo
 
 void append_triangles(Mesh& mesh, const PrimitiveSource& source, std::size_t group, std::size_t first_wedge) {
   const auto base = static_cast<std::uint32_t>(first_wedge);
+  if (group > 0) mesh.face_group.resize(mesh.triangles.size(), 0);  // group 0's, which needed none alone
   for (const Triangle& t : source.triangles) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
   if (group > 0) mesh.face_group.resize(mesh.triangles.size(), static_cast<std::uint32_t>(group));
 }

@@ -50,8 +50,8 @@ class GltfPack {
 
   Json& json_;
   Compression compression_;
-  std::vector<std::string> bytes_;     // a level, until finish()
-  std::vector<std::uint64_t> sizes_;   // a level, from then on
+  std::vector<std::string> bytes_;    // a level, until finish()
+  std::vector<std::uint64_t> sizes_;  // a level, from then on
   std::vector<Place> places_;
   std::vector<std::size_t> free_;
   std::uint64_t fallback_bytes_ = 0;

@@ -20,6 +20,7 @@
 #include "lodestone/io/gltf_lod_detail.h"
 #include "lodestone/io/gltf_repair_detail.h"
 #include "lodestone/io/meshopt_detail.h"
+#include "lodestone/io/text_reader_detail.h"
 #include "lodestone/io/uri_detail.h"
 
 namespace lodestone::io {
@@ -67,13 +68,14 @@ bool has_draco_primitive(const Json& mesh) {
   return false;
 }
 
-// Meshes whose level 0 cannot keep the document's own accessors.
+// Meshes whose level 0 cannot keep the document's own accessors. One that never had a triangle stays as it is.
 std::vector<bool> find_rewritten(const Writer& w) {
   const std::vector<Mesh>& meshes = w.ladder.original.meshes;
   std::vector<bool> out(meshes.size(), true);
   for (std::size_t m = 0; w.document != nullptr && m < meshes.size(); ++m) {
-    out[m] = w.options.compression != Compression::none || has_draco_primitive(w.source_meshes[m]) ||
-             w.document->fingerprints[m] != fingerprint(meshes[m]);
+    const bool changed = w.document->fingerprints[m] != fingerprint(meshes[m]);
+    const bool coded = w.options.compression != Compression::none || has_draco_primitive(w.source_meshes[m]);
+    out[m] = changed || (coded && !meshes[m].triangles.empty());
   }
   return out;
 }
@@ -94,6 +96,10 @@ void keep_views(Writer& w) {
 void keep_images(Writer& w) {
   for (const ExternalImage& image : w.document->images) {
     Json& json = w.json["images"][image.image];
+    if (image.mime.empty()) {
+      w.report.warnings.push_back(fmt::format("image {} is of an unknown kind: still a file of its own", image.image));
+      continue;
+    }
     json.erase("uri");
     json["bufferView"] = w.pack->add_bytes(0, as_text(image.bytes));
     json["mimeType"] = image.mime;
@@ -129,6 +135,7 @@ void begin_fresh(Writer& w) {
 Json pack_primitives(Writer& w, std::size_t level, const Mesh& mesh, std::size_t index) {
   const bool flip_v = w.document == nullptr && !w.ladder.original.uv_origin_top;
   const std::vector<AttributePlan> plans = plan_attributes(mesh, w.document != nullptr, flip_v, w.report.warnings);
+  GroupIndexer groups(mesh);
   Json out = Json::array();
   std::size_t group = 0;
   for (const Json& source : array_member(w.source_meshes[index], "primitives")) {
@@ -136,17 +143,35 @@ Json pack_primitives(Writer& w, std::size_t level, const Mesh& mesh, std::size_t
       out.push_back(source);
       continue;
     }
-    Json primitive = pack_primitive(*w.pack, level, mesh, group++, plans, source);
-    if (!primitive.is_null()) out.push_back(std::move(primitive));
-  }
-  if (w.options.compression == Compression::draco) {
-    for (const Json& p : out) {
-      if (!is_draco_primitive(p)) continue;
-      list_extension(w.json, "extensionsUsed", kDraco);
-      list_extension(w.json, "extensionsRequired", kDraco);
-    }
+    Json primitive = pack_primitive(*w.pack, level, mesh, groups.of(group++), plans, source, w.report.warnings);
+    if (primitive.is_null()) continue;
+    if (w.document == nullptr) use_untextured_material(w.json, primitive);
+    out.push_back(std::move(primitive));
   }
   return out;
+}
+
+bool names(const Json& object, const char* key, std::size_t index) {
+  const Json* value = member(object, key);
+  return value != nullptr && as_uint(*value) == std::optional<std::uint64_t>(index);
+}
+
+// A mesh of which nothing is left: no node draws it any more. It keeps its index, and a point that takes no bytes.
+void retire_mesh(Json& json, std::size_t mesh) {
+  json["accessors"].push_back(
+      {{"componentType", 5126}, {"count", 1}, {"type", "VEC3"}, {"min", {0, 0, 0}}, {"max", {0, 0, 0}}});
+  const std::size_t accessor = json["accessors"].size() - 1;
+  json["meshes"][mesh]["primitives"] = Json::array({{{"attributes", {{"POSITION", accessor}}}, {"mode", 0}}});
+  json["meshes"][mesh].erase("weights");
+  for (std::size_t n = 0; n < json["nodes"].size(); ++n) {
+    Json& node = json["nodes"][n];
+    if (!names(node, "mesh", mesh)) continue;
+    for (const char* key : {"mesh", "skin", "weights"}) node.erase(key);
+    if (node.contains("extensions") && node["extensions"].erase(kInstancing) > 0 && node["extensions"].empty()) {
+      node.erase("extensions");
+    }
+    detach_weight_channels(json, n);
+  }
 }
 
 // Level 0: the document's own accessors where they can stay.
@@ -154,10 +179,14 @@ Result<void> write_original_meshes(Writer& w, const Task& task) {
   const std::vector<Mesh>& meshes = w.ladder.original.meshes;
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     if (task.cancelled()) return cancelled_error("writing");
-    const bool keeps = w.document != nullptr && w.options.compression == Compression::none &&
-                       !has_draco_primitive(w.source_meshes[m]) &&
-                       w.document->fingerprints[m] == fingerprint(meshes[m]);
-    if (!keeps) w.json["meshes"][m]["primitives"] = pack_primitives(w, 0, meshes[m], m);
+    if (!w.rewritten[m]) continue;
+    Json primitives = pack_primitives(w, 0, meshes[m], m);
+    drop_geometry_extensions(w.json["meshes"][m], w.report.warnings);
+    if (primitives.empty()) {
+      retire_mesh(w.json, m);
+    } else {
+      w.json["meshes"][m]["primitives"] = std::move(primitives);
+    }
   }
   return {};
 }
@@ -175,6 +204,7 @@ Result<std::vector<std::size_t>> write_level_meshes(Writer& w, std::size_t level
     Json mesh = w.source_meshes[m];
     const std::string name = string_member(mesh, "name");
     if (!name.empty()) mesh["name"] = fmt::format("{}_LOD{}", name, level);
+    drop_geometry_extensions(mesh, w.report.warnings);
     mesh["primitives"] = std::move(primitives);
     out[m] = w.json["meshes"].size();
     w.json["meshes"].push_back(std::move(mesh));
@@ -205,6 +235,17 @@ Result<void> write_levels(Writer& w, const Task& task) {
   }
   list_extension(w.json, "extensionsUsed", kMsftLod);
   return {};
+}
+
+void list_draco(Json& json) {
+  for (const Json& mesh : array_member(json, "meshes")) {
+    for (const Json& primitive : array_member(mesh, "primitives")) {
+      if (!is_draco_primitive(primitive)) continue;
+      list_extension(json, "extensionsUsed", kDraco);
+      list_extension(json, "extensionsRequired", kDraco);
+      return;
+    }
+  }
 }
 
 // Names from other formats may be no UTF-8: what isn't becomes U+FFFD.
@@ -249,15 +290,26 @@ Result<void> write_gltf_and_bin(Writer& w, const std::filesystem::path& path, co
   if (!bin.empty()) w.json["buffers"][0]["uri"] = encode_uri(bin_path.filename().string());
   const std::string text = dump(w.json, 2) + "\n";
   w.report.total_bytes = text.size() + bin.size();
-  Result<OutputFile> json_file = OutputFile::create(path);
-  if (!json_file) return fail(json_file.error());
-  json_file->write(text);
-  if (bin.empty()) return json_file->commit();
-  Result<OutputFile> bin_file = OutputFile::create(bin_path);
-  if (!bin_file) return fail(bin_file.error());
-  bin_file->write(bin);
-  if (const Result<void> ok = bin_file->commit(); !ok) return ok;
-  return json_file->commit();
+  const auto put = [](const std::filesystem::path& to, const std::string& bytes) -> Result<void> {
+    Result<OutputFile> file = OutputFile::create(to);
+    if (!file) return fail(file.error());
+    file->write(bytes);
+    return file->commit();
+  };
+  if (bin.empty()) return put(path, text);
+  // Both are whole on the disk before either appears.
+  if (std::filesystem::is_directory(path) || std::filesystem::is_directory(bin_path)) {
+    return fail(ErrorCode::cannot_write, "a folder of this name or of its .bin is in the way", path.string());
+  }
+  Result<StagingFolder> staging = StagingFolder::create(path);
+  if (!staging) return fail(staging.error());
+  if (const Result<void> ok = put(staging->path() / bin_path.filename(), bin); !ok) {
+    return fail(ok.error().code, ok.error().what, bin_path.string(), ok.error().remedy);
+  }
+  if (const Result<void> ok = put(staging->path() / path.filename(), text); !ok) {
+    return fail(ok.error().code, ok.error().what, path.string(), ok.error().remedy);
+  }
+  return staging->commit();
 }
 
 void report_levels(Writer& w, const std::filesystem::path& path) {
@@ -280,11 +332,11 @@ Result<WriteReport> write(const Ladder& ladder, const std::filesystem::path& pat
   }
   if (const Result<void> ok = write_original_meshes(w, task); !ok) return fail(ok.error());
   if (const Result<void> ok = write_levels(w, task); !ok) return fail(ok.error());
+  list_draco(w.json);
   const std::string bin = w.pack->finish();
   if (bin.empty()) w.json.erase("buffers");
   if (task.cancelled()) return cancelled_error("writing");
-  std::string extension = path.extension().string();
-  const bool text = extension == ".gltf" || extension == ".GLTF";
+  const bool text = lower_case(path.extension().string()) == ".gltf";
   const Result<void> ok = text ? write_gltf_and_bin(w, path, bin) : write_glb(w, path, bin);
   if (!ok) return fail(ok.error());
   report_levels(w, path);
@@ -295,7 +347,15 @@ Result<WriteReport> write(const Ladder& ladder, const std::filesystem::path& pat
 
 Result<WriteReport> write_gltf(const Ladder& ladder, const std::filesystem::path& path, const WriteOptions& options,
                                Task task) {
-  return write(ladder, path, options, task);
+  try {
+    return write(ladder, path, options, task);
+  } catch (const Json::exception&) {  // reading looks at what it needs only; the rest may be of any type
+    return fail(ErrorCode::bad_format, "the glTF document that the model came from has members of wrong types",
+                path.string(), "repair the input, or convert it to another format first");
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::out_of_memory, "needs more memory than there is", path.string(),
+                "use a machine with more, or write fewer levels");
+  }
 }
 
 }  // namespace lodestone::io

@@ -201,9 +201,12 @@ class HeaderParser {
   // No count is believed that the bytes behind the header cannot hold.
   Result<void> check_counts() {
     std::uint64_t left = bytes_.remaining() + 1;  // the last number of a text may end with the file
-    for (const PlyElement& element : header_.elements) {
+    for (PlyElement& element : header_.elements) {
       const std::uint64_t each = element.smallest_record(header_.format);
-      if (each == 0) continue;  // nothing to read, whatever the count
+      if (each == 0) {  // nothing to read, whatever the count: nor to count through
+        element.count = 0;
+        continue;
+      }
       if (element.count > left / each) {
         return count_too_large(element.name, element.count, each, bytes_.size(),
                                line_place(bytes_.name(), element.line));
