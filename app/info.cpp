@@ -8,6 +8,7 @@
 #include "app/table.h"
 #include "app/text.h"
 #include "app/verbs.h"
+#include "lodestone/base/parallel.h"
 #include "lodestone/base/units.h"
 
 namespace lodestone::app {
@@ -83,19 +84,30 @@ void add_topology(Topology& sum, const Topology& one, std::uint64_t times) {
 }
 
 // Area and signed volume of a mesh where an instance puts it.
-void add_measures(InfoReport& report, const Mesh& mesh, const Mat4d& transform, Vec3d center) {
-  double area = 0, volume = 0;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Triangle t = mesh.vertices_of(i);
-    const Vec3d a = transform.point(mesh.position(t[0])) - center;
-    const Vec3d b = transform.point(mesh.position(t[1])) - center;
-    const Vec3d c = transform.point(mesh.position(t[2])) - center;
-    area += length(cross(b - a, c - a)) / 2;
-    volume += dot(a, cross(b, c)) / 6;
-  }
-  report.area += area;
-  report.volume +=
-      transform.determinant3() < 0 ? -volume : volume;  // a mirror turns the faces, a renderer turns them back
+void add_measures(InfoReport& report, const Mesh& mesh, const Mat4d& transform, Vec3d center, const Task& task) {
+  struct Sums {
+    double area = 0, volume = 0;
+  };
+  const auto of_block = [&](std::size_t begin, std::size_t end) {
+    Sums sums;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Triangle t = mesh.vertices_of(i);
+      const Vec3d a = transform.point(mesh.position(t[0])) - center;
+      const Vec3d b = transform.point(mesh.position(t[1])) - center;
+      const Vec3d c = transform.point(mesh.position(t[2])) - center;
+      sums.area += length(cross(b - a, c - a)) / 2;
+      sums.volume += dot(a, cross(b, c)) / 6;
+    }
+    return sums;
+  };
+  constexpr std::size_t kBlock = 16384;
+  const Sums sums =
+      parallel_reduce(mesh.triangles.size(), kBlock, task, Sums{}, of_block, [](const Sums& a, const Sums& b) {
+        return Sums{a.area + b.area, a.volume + b.volume};
+      });
+  report.area += sums.area;
+  // A mirror turns the faces, a renderer turns them back.
+  report.volume += transform.determinant3() < 0 ? -sums.volume : sums.volume;
 }
 
 void add_attributes(InfoReport& report, const Mesh& mesh) {
@@ -124,7 +136,7 @@ Result<void> examine(InfoReport& report, const Model& model, const Task& task) {
   if (report.meshes == 0) report.topology.closed = report.topology.manifold = false;
   const Box3d bounds = bounds_of(model);
   for (const Instance& instance : model.instances) {
-    add_measures(report, model.meshes[instance.mesh], instance.transform, bounds.center());
+    add_measures(report, model.meshes[instance.mesh], instance.transform, bounds.center(), task);
     if (task.cancelled()) return cancelled_error("measuring");
   }
   report.instances = model.instances.size();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodestone/base/parallel.h"
+
 namespace lodestone::app {
 namespace {
 
@@ -66,30 +68,37 @@ RingPlan plan_rings(std::size_t triangles, const RingProfile& profile) {
   return plan;
 }
 
-Mesh stack_rings(const RingPlan& plan, const RingSurface& surface) {
-  Mesh mesh;
-  std::size_t vertices = 2;
-  for (const std::uint32_t count : plan.counts) vertices += count;
-  mesh.positions.reserve(vertices);
-  mesh.triangles.reserve(2 * (vertices - 2));
-
-  std::vector<std::uint32_t> first;
-  mesh.positions.push_back(to_float(surface(0, 0)));
-  for (std::size_t r = 0; r < plan.counts.size(); ++r) {
-    first.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
-    for (std::uint32_t k = 0; k < plan.counts[r]; ++k) {
-      const double turns = (k + 0.5 * static_cast<double>(r % 2)) / plan.counts[r];
-      mesh.positions.push_back(to_float(surface(plan.places[r], turns)));
-    }
+Mesh stack_rings(const RingPlan& plan, const RingSurface& surface, const Task& task) {
+  std::vector<std::uint32_t> first;  // vertex of each ring; vertex 0 is the lower pole
+  std::uint32_t next = 1;
+  for (const std::uint32_t count : plan.counts) {
+    first.push_back(next);
+    next += count;
   }
-  mesh.positions.push_back(to_float(surface(1, 0)));
+  Mesh mesh;
+  mesh.positions.resize(std::size_t{next} + 1);
+  mesh.triangles.reserve(2 * (std::size_t{next} - 1));
+
+  mesh.positions.front() = to_float(surface(0, 0));
+  mesh.positions.back() = to_float(surface(1, 0));
+  const std::size_t rings = plan.counts.size();
+  constexpr std::size_t kRingsAtOnce = 4;
+  parallel_for(rings, kRingsAtOnce, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t r = begin; r < end; ++r) {
+      for (std::uint32_t k = 0; k < plan.counts[r]; ++k) {
+        const double turns = (k + 0.5 * static_cast<double>(r % 2)) / plan.counts[r];
+        mesh.positions[first[r] + k] = to_float(surface(plan.places[r], turns));
+      }
+    }
+    task.advance(static_cast<double>(end - begin) / static_cast<double>(rings));
+  });
 
   const auto phase = [](std::size_t ring) { return static_cast<std::uint32_t>(ring % 2); };
   const std::uint32_t bottom_count = plan.counts.front(), top_count = plan.counts.back();
   for (std::uint32_t k = 0; k < bottom_count; ++k) {
     mesh.triangles.push_back(Triangle{0, first[0] + (k + 1) % bottom_count, first[0] + k});
   }
-  for (std::size_t r = 0; r + 1 < plan.counts.size(); ++r) {
+  for (std::size_t r = 0; r + 1 < rings && !task.cancelled(); ++r) {
     zip_rings(mesh.triangles, first[r], plan.counts[r], phase(r), first[r + 1], plan.counts[r + 1], phase(r + 1));
   }
   const auto top = static_cast<std::uint32_t>(mesh.positions.size() - 1);

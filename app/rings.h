@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "lodestone/base/task.h"
 #include "lodestone/core/mesh.h"
 
 namespace lodestone::app {
@@ -28,7 +29,8 @@ RingPlan plan_rings(std::size_t triangles, const RingProfile& profile);
 /// Position at a place (0 to 1, bottom to top) and an angle in turns, counter-clockwise seen from above.
 using RingSurface = std::function<Vec3d(double place, double turns)>;
 
-/// Triangles = twice the sum of the counts. Closed, genus 0. O(triangles).
-Mesh stack_rings(const RingPlan& plan, const RingSurface& surface);
+/// Triangles = twice the sum of the counts. Closed, genus 0. O(triangles). `surface` is called from several threads.
+/// What comes back from a cancelled task is not complete.
+Mesh stack_rings(const RingPlan& plan, const RingSurface& surface, const Task& task = {});
 
 }  // namespace lodestone::app

@@ -14,22 +14,22 @@ namespace {
 
 constexpr std::size_t kDefaultTriangles = 100'000, kDefaultTowerTriangles = 20'000;
 
-Result<Model> make_sphere_of(const Arguments& arguments, std::size_t triangles) {
+Result<Model> make_sphere_of(const Arguments& arguments, std::size_t triangles, const Task& task) {
   if (arguments.has("--triangles")) {
     if (arguments.has("--level")) {
       return fail(ErrorCode::bad_argument, "--triangles and --level can't be given together", {}, "choose one");
     }
-    return make_sphere(triangles);
+    return make_sphere(triangles, task);
   }
   const Result<std::uint64_t> level = arguments.count("--level");
   if (!level) return fail(level.error());
   if (*level > static_cast<std::uint64_t>(kMostSphereLevel)) {
     return fail(ErrorCode::bad_argument, fmt::format("--level is {}, the limit is {}", *level, kMostSphereLevel));
   }
-  return make_icosphere(static_cast<int>(*level));
+  return make_icosphere(static_cast<int>(*level), task);
 }
 
-Result<Model> make_sample(const Arguments& arguments) {
+Result<Model> make_sample(const Arguments& arguments, const Task& task) {
   const std::string& name = arguments.inputs.front();
   const Result<std::uint64_t> seed = arguments.count("--seed");
   if (!seed) return fail(seed.error());
@@ -43,13 +43,13 @@ Result<Model> make_sample(const Arguments& arguments) {
     }
     triangles = *wanted;
   }
-  if (name == "sphere") return make_sphere_of(arguments, triangles);
+  if (name == "sphere") return make_sphere_of(arguments, triangles, task);
   if (arguments.has("--level")) {
     return fail(ErrorCode::bad_argument, fmt::format("{} has no --level", name), {}, "use --triangles N");
   }
-  if (name == "statue") return make_statue(triangles, *seed);
-  if (name == "tower") return make_tower(triangles);
-  return make_terrain(triangles, *seed);
+  if (name == "statue") return make_statue(triangles, *seed, task);
+  if (name == "tower") return make_tower(triangles, task);
+  return make_terrain(triangles, *seed, task);
 }
 
 }  // namespace
@@ -64,10 +64,10 @@ Result<ExitCode> run_sample(const Arguments& arguments, Console& console) {
   report.file = arguments.text("--output");
   if (const Result<void> checked = check_output(report.file, {}); !checked) return fail(checked.error());
   Stopwatch watch;
-  const Result<Model> model = make_sample(arguments);
+  const Result<Model> model = make_sample(arguments, console.task().part(0.5, "making"));
   if (!model) return fail(model.error());
   if (console.task().cancelled()) return cancelled_error("making the sample");
-  const Result<io::WriteReport> written = io::write_model(*model, report.file, {}, console.task().part(1, "writing"));
+  const Result<io::WriteReport> written = io::write_model(*model, report.file, {}, console.task().part(0.5, "writing"));
   if (!written) return fail(written.error());
   for (const std::string& warning : written->warnings) console.note(fmt::format("{}: {}", report.file, warning));
   report.triangles = drawn_triangles(*model);

@@ -48,11 +48,13 @@ class Middles {
   std::vector<Entry> entries_;
 };
 
-void subdivide(Mesh& mesh) {
+void subdivide(Mesh& mesh, const Task& task) {
   Middles middles(mesh);
   std::vector<Triangle> finer;
   finer.reserve(mesh.triangles.size() * 4);
-  for (const Triangle& t : mesh.triangles) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (i % 65536 == 0 && task.cancelled()) return;
+    const Triangle& t = mesh.triangles[i];
     const std::uint32_t a = middles.of(t[0], t[1]), b = middles.of(t[1], t[2]), c = middles.of(t[2], t[0]);
     finer.insert(finer.end(), {Triangle{t[0], a, c}, Triangle{t[1], b, a}, Triangle{t[2], c, b}, Triangle{a, b, c}});
   }
@@ -61,20 +63,21 @@ void subdivide(Mesh& mesh) {
 
 }  // namespace
 
-Model make_icosphere(int level) {
+Model make_icosphere(int level, const Task& task) {
   Mesh mesh = icosahedron();
-  for (int i = 0; i < level; ++i) subdivide(mesh);
+  for (int i = 0; i < level && !task.cancelled(); ++i) subdivide(mesh, task);
   mesh.name = "sphere";
   return make_model(std::move(mesh));
 }
 
-Model make_sphere(std::size_t triangles) {
+Model make_sphere(std::size_t triangles, const Task& task) {
   // Places are shares of the half circle from the lower to the upper pole.
   const RingProfile profile{[](double place) { return 2 * kPi * sine_cosine(place / 2).sine; }, kPi};
-  Mesh mesh = stack_rings(plan_rings(triangles, profile), [](double place, double turns) {
+  const RingSurface surface = [](double place, double turns) {
     const SineCosine height = sine_cosine(place / 2), around = sine_cosine(turns);
     return Vec3d{height.sine * around.sine, -height.cosine, height.sine * around.cosine};
-  });
+  };
+  Mesh mesh = stack_rings(plan_rings(triangles, profile), surface, task);
   mesh.name = "sphere";
   return make_model(std::move(mesh));
 }

@@ -119,21 +119,22 @@ Vec3d sculpted(Vec3d p, Vec3d outward, double front, std::uint64_t seed) {
 
 }  // namespace
 
-Model make_statue(std::size_t triangles, std::uint64_t seed) {
+Model make_statue(std::size_t triangles, std::uint64_t seed, const Task& task) {
   const Outline outline;
   const RingProfile profile{[&](double place) {
                               const Row row = outline.at(place);
                               return 2 * kPi * std::sqrt((row[1] * row[1] + row[2] * row[2]) / 2);
                             },
                             outline.length()};
-  Mesh mesh = stack_rings(plan_rings(triangles, profile), [&](double place, double turns) {
+  const RingSurface surface = [&](double place, double turns) {
     const Row row = outline.at(place), below = outline.at(place - 1e-3), above = outline.at(place + 1e-3);
     const SineCosine angle = sine_cosine(turns);
     const Vec3d p{row[1] * angle.sine, row[0], row[3] + row[2] * angle.cosine};
     const double rise = above[0] - below[0], widen = (above[1] + above[2] - below[1] - below[2]) / 2;
     const Vec3d outward = normalized(Vec3d{angle.sine * rise, -widen, angle.cosine * rise});
     return sculpted(p, outward, angle.cosine, seed);
-  });
+  };
+  Mesh mesh = stack_rings(plan_rings(triangles, profile), surface, task);
   mesh.name = "statue";
   Model model = make_model(std::move(mesh));
   model.meters_per_unit = 1;

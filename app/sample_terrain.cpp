@@ -3,6 +3,7 @@
 
 #include "app/noise.h"
 #include "app/samples.h"
+#include "lodestone/base/parallel.h"
 
 namespace lodestone::app {
 namespace {
@@ -45,27 +46,27 @@ double height_at(double x, double z, std::uint64_t seed) {
 
 }  // namespace
 
-Model make_terrain(std::size_t triangles, std::uint64_t seed) {
+Model make_terrain(std::size_t triangles, std::uint64_t seed, const Task& task) {
   const Grid grid = grid_for(triangles);
   const std::size_t across = grid.columns + 1, vertices = across * (grid.rows + 1);
   Mesh mesh;
   mesh.name = "terrain";
-  mesh.positions.reserve(vertices);
+  mesh.positions.resize(vertices);
   mesh.attributes.push_back(make_stream("TEXCOORD_0", Semantic::uv, 2, ComponentType::float32, false, vertices));
   auto& uv = std::get<std::vector<float>>(mesh.attributes[0].values);
-  for (std::size_t row = 0; row <= grid.rows; ++row) {
-    for (std::size_t column = 0; column < across; ++column) {
-      const double u = static_cast<double>(column) / static_cast<double>(grid.columns);
-      const double v = static_cast<double>(row) / static_cast<double>(grid.rows);
-      const std::size_t i = mesh.positions.size();
-      mesh.positions.push_back(
-          to_float(Vec3d{(u - 0.5) * kSize, height_at(u * kSize, v * kSize, seed), (v - 0.5) * kSize}));
+  constexpr std::size_t kVerticesAtOnce = 4096;
+  parallel_for(vertices, kVerticesAtOnce, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double u = static_cast<double>(i % across) / static_cast<double>(grid.columns);
+      const double v = static_cast<double>(i / across) / static_cast<double>(grid.rows);
+      mesh.positions[i] = to_float(Vec3d{(u - 0.5) * kSize, height_at(u * kSize, v * kSize, seed), (v - 0.5) * kSize});
       uv[2 * i] = static_cast<float>(u);
       uv[2 * i + 1] = static_cast<float>(v);
     }
-  }
+    task.advance(static_cast<double>(end - begin) / static_cast<double>(vertices));
+  });
   mesh.triangles.reserve(2 * grid.columns * grid.rows);
-  for (std::size_t row = 0; row < grid.rows; ++row) {
+  for (std::size_t row = 0; row < grid.rows && !task.cancelled(); ++row) {
     for (std::size_t column = 0; column < grid.columns; ++column) {
       const auto a = static_cast<std::uint32_t>(row * across + column);
       const auto c = static_cast<std::uint32_t>(a + across);

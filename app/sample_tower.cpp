@@ -180,10 +180,10 @@ class TowerBuilder {
   std::vector<Instance>& instances_;
 };
 
-std::vector<Instance> place_parts(const TowerPlan& plan) {
+std::vector<Instance> place_parts(const TowerPlan& plan, const Task& task) {
   std::vector<Instance> instances;
   TowerBuilder builder(instances);
-  for (std::size_t i = 0; i < plan.towers; ++i) {
+  for (std::size_t i = 0; i < plan.towers && !task.cancelled(); ++i) {
     const Vec3d foot{0, 0, kSpan * static_cast<double>(i)};
     const bool more = i + 1 < plan.towers;
     builder.body(plan, foot);
@@ -240,11 +240,11 @@ TowerPlan plan_for(std::size_t triangles) {
 
 }  // namespace
 
-Model make_tower(std::size_t triangles) {
+Model make_tower(std::size_t triangles, const Task& task) {
   const TowerPlan plan = plan_for(triangles);
   Model model;
   model.meshes = {strut_mesh(), disc_mesh(plan.disc_sides), cable_mesh(plan.cable_parts)};
-  model.instances = place_parts(plan);
+  model.instances = place_parts(plan, task);
   model.meters_per_unit = 1;
   const auto paint = [&](MeshIndex mesh, const char* name, std::array<float, 4> color, float metallic) {
     Material material;

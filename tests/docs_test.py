@@ -123,10 +123,13 @@ def check_cpp(document, compiler):
 
 
 def steady(text):
-    """The lines without what differs from run to run: seconds and bytes of memory; white space as one blank."""
-    text = re.sub(r"\b\d+(\.\d+)? ?(s|ms)\b", "TIME", text)
-    text = re.sub(r"\b\d+(\.\d+)? (k|M|G)i?B memory", "MEMORY", text)
-    return [re.sub(r"[\s─-]+", " ", line).strip() for line in text.strip().splitlines()]
+    """The lines without what differs from run to run: seconds, also in a table's last column; white space as one blank."""
+    lines, timed = [], False
+    for line in text.strip().splitlines():
+        line = re.sub(r"[\s─-]+", " ", re.sub(r"\b\d+(\.\d+)? ?(s|ms)\b", "TIME", line)).strip()
+        lines.append(re.sub(r"\S+$", "TIME", line) if timed and line[:1].isdigit() else line)
+        timed = line.endswith(" seconds") or (timed and line[:1].isdigit())
+    return lines
 
 
 def check_runs(document, lod):
@@ -154,6 +157,7 @@ def main():
     parser.add_argument("--compiler", help="C++ compiler; without it nothing is compiled")
     parser.add_argument("documents", nargs="*", type=Path)
     options = parser.parse_args()
+    options.lod = options.lod and str(Path(options.lod).resolve())
     paths = [path.resolve() for path in options.documents] or [
         *(TOP / name for name in TOP_FILES if name.endswith(".md")), *sorted((TOP / "docs").rglob("*.md"))]
     problems = []

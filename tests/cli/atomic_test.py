@@ -4,7 +4,7 @@ import signal
 import subprocess
 import time
 
-from support import LOD, Scratch
+from support import Scratch, lod_path
 
 
 class Atomic(Scratch):
@@ -53,7 +53,7 @@ class Interrupt(Scratch):
     statue_triangles = 600000
 
     def stop(self, number, wait, *words):
-        process = subprocess.Popen([LOD, *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen([lod_path(), *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         time.sleep(wait)
         self.assertIsNone(process.poll(), "ended before it could be stopped")
         process.send_signal(number)
@@ -68,6 +68,12 @@ class Interrupt(Scratch):
                     self.assertEqual((code, out), (130, ""), err)
                     self.assertEqual(len(err.splitlines()), 1, err)
                     self.assertEqual(self.files(), ["statue.ply"])
+
+    def test_samples_stop_too(self):
+        for name in ("statue", "terrain"):
+            code, out, _ = self.stop(signal.SIGINT, 0.3, "sample", name, "--triangles", "50000000", "-o", "x.glb")
+            self.assertEqual((code, out), (130, ""))
+            self.assertEqual(self.files(), ["statue.ply"])
 
     def test_folder_made_for_a_batch_goes_too(self):
         code, _, _ = self.stop(signal.SIGINT, 0.4, "build", "statue.ply", "-o", "lods/", "--samples", "20000000")

@@ -5,7 +5,7 @@ import subprocess
 import re
 from pathlib import Path
 
-from support import LOD, Scratch, run
+from support import Scratch, lod_path, run
 
 VERBS = ["build", "simplify", "measure", "info", "convert", "sample"]
 ALL = VERBS + ["help", "completion"]
@@ -42,7 +42,7 @@ class Help(Scratch):
 
     def test_examples_run(self):
         self.prepare()
-        environment = dict(os.environ, PATH=f"{Path(LOD).resolve().parent}:{os.environ['PATH']}")
+        environment = dict(os.environ, PATH=f"{Path(lod_path()).resolve().parent}:{os.environ['PATH']}")
         for verb in ALL:
             for example in examples_of(verb):
                 with self.subTest(example):
@@ -51,7 +51,7 @@ class Help(Scratch):
 
     def prepare(self):
         """The files that examples name."""
-        self.lod("sample", "statue", "--triangles", "20000", "-o", "statue.ply")
+        self.lod("sample", "statue", "--triangles", "6000", "-o", "statue.ply")
         self.lod("sample", "tower", "-o", "tower.glb")
         self.lod("convert", "tower.glb", "tower.ply")
         self.lod("build", "statue.ply", "-o", "statue.glb", "--levels", "2")

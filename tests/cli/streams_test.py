@@ -1,9 +1,10 @@
 """Exit codes, what goes to which stream, the progress bar, foreign formats."""
 import os
 import pty
+import resource
 import subprocess
 
-from support import LOD, Scratch
+from support import Scratch, lod_path, run
 
 TEXT_OFF = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n"
 DAE = """<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset/>
@@ -78,9 +79,19 @@ class ExitCodes(Scratch):
         self.assertIn("level", done.stderr)
         self.assertTrue((self.folder / "t.glb").exists())
 
+    def test_no_memory_is_one_line(self):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (100 << 20, 100 << 20))
+        if run("--version", preexec_fn=limit).returncode != 0:
+            self.skipTest("this build needs more to start")
+        self.lod("sample", "statue", "--triangles", "2000000", "-o", "big.ply")
+        done = self.lod("build", "big.ply", "-o", "x.glb", "--threads", "1", code=1, preexec_fn=limit)
+        self.assert_error(done, "memory")
+        self.assertEqual(self.files(), ["big.ply", "statue.ply"])
+
     def test_output_that_nobody_takes(self):
         with open("/dev/full", "w") as full:
-            done = subprocess.run([LOD, "info", "statue.ply"], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True)
+            done = subprocess.run([lod_path(), "info", "statue.ply"], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn("standard output", done.stderr)
 
@@ -104,18 +115,22 @@ class Streams(Scratch):
             self.assertIn(word, title)
         self.assertEqual([row.split()[0] for row in rows[:5]], list("01234"))
 
+    def test_no_colours_in_a_pipe(self):
+        done = self.lod("build", "statue.ply", "-o", "a.glb", "--verbose")
+        self.assertNotIn("\x1b", done.stdout + done.stderr)
+
     def test_words_after_dashes_are_inputs(self):
         os.rename(self.folder / "statue.ply", self.folder / "-x.ply")
         self.assertIn("4,000", self.lod("info", "--", "-x.ply").stdout)
 
 
 class Progress(Scratch):
-    statue_triangles = 200000
+    statue_triangles = 150000
 
     def on_terminal(self, *words):
         """Runs lod with a terminal as standard error; returns what came there."""
         ours, theirs = pty.openpty()
-        process = subprocess.Popen([LOD, *words], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=theirs)
+        process = subprocess.Popen([lod_path(), *words], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=theirs)
         os.close(theirs)
         seen = b""
         while True:
@@ -130,14 +145,15 @@ class Progress(Scratch):
         self.assertEqual(process.wait(), 0)
         return seen.decode()
 
-    def test_on_a_terminal_with_label_and_share(self):
-        seen = self.on_terminal("build", "statue.ply", "-o", "a.glb")
+    def test_on_a_terminal_with_label_share_and_time_left(self):
+        seen = self.on_terminal("build", "statue.ply", "-o", "a.glb", "--samples", "1000000")
         self.assertRegex(seen, r"[a-z]+ \[#*\.*\] +\d+ %")
+        self.assertRegex(seen, r"\d+ s left")
         self.assertTrue(seen.endswith("\r\033[K"), "the bar is taken away at the end")
 
     def test_never_elsewhere_or_when_quiet(self):
-        self.assertNotIn("[", self.lod("build", "statue.ply", "-o", "a.glb").stderr)
-        self.assertEqual(self.on_terminal("build", "statue.ply", "-o", "a.glb", "--quiet"), "")
+        self.assertNotIn("[", self.lod("build", "statue.ply", "-o", "a.glb", "--levels", "2").stderr)
+        self.assertEqual(self.on_terminal("build", "statue.ply", "-o", "a.glb", "--levels", "2", "--quiet"), "")
 
 
 class Foreign(Scratch):

@@ -1,17 +1,28 @@
 """What the tests of the command share: a scratch folder with models, and ways to run `lod`."""
 import json
 import os
+import shutil
 import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
-LOD = os.environ.get("LOD", "lod")
+_lod = "lod"
+
+
+def use(command):
+    """Sets which command is tested; a path may be relative."""
+    global _lod
+    _lod = os.path.abspath(shutil.which(command) or command)
+
+
+def lod_path():
+    return _lod
 
 
 def run(*words, cwd=None, **more):
     """Runs lod; standard output and error come as text, bytes that are not UTF-8 as surrogates."""
-    return subprocess.run([LOD, *map(os.fspath, words)], cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+    return subprocess.run([_lod, *map(os.fspath, words)], cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, encoding="utf-8", errors="surrogateescape", **more)
 
 

@@ -34,7 +34,6 @@ cmake --build "$scratch/cmake" >"$scratch/build.log" || {
 }
 "$scratch/cmake/measure_levels" "$scratch/sphere.ply" >"$scratch/by_cmake"
 
-# shellcheck disable=SC2046
 PKG_CONFIG_PATH=$(dirname "$pc") && export PKG_CONFIG_PATH
 # shellcheck disable=SC2046
 "$compiler" "$@" -std=c++20 "$example/main.cpp" $(pkg-config --cflags --libs lodestone) -o "$scratch/by_hand"
@@ -45,7 +44,8 @@ cmp "$scratch/by_cmake" "$scratch/by_pkg_config"
 [ "$(wc -l <"$scratch/by_cmake")" -eq 5 ]
 # Every installed header stands on its own.
 find "$scratch/tree/include" -name '*.h' | sort | while read -r header; do
-  "$compiler" "$@" -std=c++20 -fsyntax-only -x c++ -I"$scratch/tree/include" "$header" || {
+  echo "#include \"${header#"$scratch/tree/include/"}\"" |
+    "$compiler" "$@" -std=c++20 -fsyntax-only -x c++ -I"$scratch/tree/include" - || {
     echo "$header does not compile on its own" >&2
     exit 1
   }
