@@ -19,9 +19,12 @@ namespace lodestone::io {
 /// for each level. The binary chunk holds the coarsest level first. A level whose mesh has no triangle left is a node
 /// without one. From no document: a fresh one with a node an instance.
 ///
-/// Compression is lossless here: meshopt without filters, Draco without quantization; so stored errors stay true.
+/// Nothing is rounded that an error was measured on: compression is lossless (meshopt without filters, Draco without
+/// quantization; primitives with morph targets stay plain under Draco, with a warning), and positions of a quantized
+/// file are stored as its integers only where these hold them exactly, else as floats. Other attributes keep the
+/// source's component type. Extensions of a primitive that describe its old geometry stay with level 0 only.
 /// Errors: cannot_write (also: a GLB above 4 GiB), bad_argument (levels that don't fit the original), unsupported
-/// (compression not built in), cancelled.
+/// (compression not built in), bad_format (the original's JSON has members of wrong types), out_of_memory, cancelled.
 Result<WriteReport> write_gltf(const Ladder& ladder, const std::filesystem::path& path,
                                const WriteOptions& options = {}, Task task = {});
 

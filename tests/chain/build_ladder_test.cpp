@@ -8,14 +8,21 @@
 namespace lodestone::chain {
 namespace {
 
-LadderResult built(Mesh mesh, const LadderOptions& options = {}) {
+// Fewer samples than users get, so that the sanitizers finish; one test keeps the default.
+LadderOptions quick() {
+  LadderOptions options = quick();
+  options.distance.samples = 10'000;
+  return options;
+}
+
+LadderResult built(Mesh mesh, const LadderOptions& options = quick()) {
   auto r = build_ladder(make_model(std::move(mesh)), options);
   EXPECT_TRUE(r);
   return std::move(*r);
 }
 
 TEST(BuildLadder, halves_by_default_and_measures_every_level) {
-  const LadderResult r = built(test::torus(60));
+  const LadderResult r = built(test::torus(60), {});
   const auto& levels = r.ladder.levels;
   ASSERT_EQ(levels.size(), 5U);
   EXPECT_TRUE(r.shortfalls.empty());
@@ -36,7 +43,7 @@ TEST(BuildLadder, halves_by_default_and_measures_every_level) {
 }
 
 TEST(BuildLadder, ratios_and_counts) {
-  LadderOptions options;
+  LadderOptions options = quick();
   options.ratios = {0.3, 0.1};
   const LadderResult by_ratio = built(test::torus(40), options);
   ASSERT_EQ(by_ratio.ladder.levels.size(), 3U);
@@ -49,7 +56,7 @@ TEST(BuildLadder, ratios_and_counts) {
 }
 
 TEST(BuildLadder, error_targets_hold_when_measured_and_are_not_wasteful) {
-  LadderOptions options;
+  LadderOptions options = quick();
   options.errors = {0.005, 0.02};
   const LadderResult r = built(test::torus(60), options);
   ASSERT_EQ(r.ladder.levels.size(), 3U);
@@ -64,7 +71,7 @@ TEST(BuildLadder, what_cannot_shrink_further_ends_early_and_says_why) {
   const LadderResult r = built(test::cube());
   EXPECT_FALSE(r.shortfalls.empty());
   EXPECT_LT(r.ladder.levels.size(), 5U);
-  LadderOptions options;
+  LadderOptions options = quick();
   options.keep_border = true;
   const LadderResult bordered = built(test::grid(8), options);
   ASSERT_FALSE(bordered.shortfalls.empty());
@@ -78,7 +85,7 @@ TEST(BuildLadder, one_budget_for_all_meshes_spent_where_it_hurts_least) {
   model.instances.push_back({1, Mat4d::translation({5, 0, 0}), "flat"});
   model.instances.push_back({1, Mat4d::translation({8, 0, 0}), "flat again"});
   const std::size_t drawn = drawn_triangles(model);
-  LadderOptions options;
+  LadderOptions options = quick();
   options.ratios = {0.5};
   auto r = build_ladder(std::move(model), options);
   ASSERT_TRUE(r);
@@ -93,7 +100,7 @@ TEST(BuildLadder, larger_instances_keep_more) {
   Model model = make_model(test::sphere(20));
   model.meshes.push_back(test::sphere(20));
   model.instances.push_back({1, Mat4d::translation({50, 0, 0}) * Mat4d::scale({10, 10, 10}), "large"});
-  LadderOptions options;
+  LadderOptions options = quick();
   options.ratios = {0.3};
   auto r = build_ladder(std::move(model), options);
   ASSERT_TRUE(r);
@@ -106,14 +113,14 @@ TEST(BuildLadder, bad_arguments) {
     const auto r = build_ladder(make_model(test::cube()), options);
     return r ? ErrorCode::cancelled : r.error().code;
   };
-  LadderOptions options;
+  LadderOptions options = quick();
   options.levels = 1;
   EXPECT_EQ(code(options), ErrorCode::bad_argument);
-  options = {};
+  options = quick();
   options.ratios = {0.5};
   options.errors = {0.1};
   EXPECT_EQ(code(options), ErrorCode::bad_argument);
-  options = {};
+  options = quick();
   options.ratios = {0.1, 0.5};
   EXPECT_EQ(code(options), ErrorCode::bad_argument);
   options.ratios = {1.5};
@@ -127,6 +134,7 @@ TEST(BuildLadder, bad_arguments) {
 TEST(SimplifyModel, targets) {
   const Model model = make_model(test::torus(40));
   SimplifyModelOptions options;
+  options.distance.samples = 10'000;
   EXPECT_FALSE(simplify_model(model, options));
   options.target_triangles = 500;
   auto r = simplify_model(model, options);
@@ -134,12 +142,12 @@ TEST(SimplifyModel, targets) {
   EXPECT_EQ(r->stop, simplify::StopReason::reached_target);
   EXPECT_LE(r->level.triangles, 500U);
   EXPECT_TRUE(r->shortfall.empty());
-  options = {};
+  options.target_triangles = 0;
   options.max_error = 0.01;
   r = simplify_model(model, options);
   ASSERT_TRUE(r);
   EXPECT_LE(r->level.error.measured_error, 0.01);
-  options = {};
+  options.max_error = 0;
   options.target_triangles = 1;
   r = simplify_model(model, options);
   ASSERT_TRUE(r);

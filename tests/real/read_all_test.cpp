@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <ostream>
 
 #include "lodestone/core/topology.h"
 #include "lodestone/io/read.h"
@@ -14,6 +15,8 @@ namespace fs = std::filesystem;
 struct Known {
   const char* file;
   std::size_t vertices, triangles;  // as the file stores them
+
+  friend std::ostream& operator<<(std::ostream& out, const Known& known) { return out << known.file; }
 };
 
 class SharedMeshes : public ::testing::TestWithParam<Known> {};

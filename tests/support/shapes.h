@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ struct Shape {
   std::string name;
   std::function<Mesh()> make;
   bool closed_manifold;
+
+  friend std::ostream& operator<<(std::ostream& out, const Shape& shape) { return out << shape.name; }
 };
 /// One of each kind, for laws that must hold on all.
 std::vector<Shape> small_shapes();
