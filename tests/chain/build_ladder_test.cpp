@@ -10,7 +10,7 @@ namespace {
 
 // Fewer samples than users get, so that the sanitizers finish; one test keeps the default.
 LadderOptions quick() {
-  LadderOptions options = quick();
+  LadderOptions options;
   options.distance.samples = 10'000;
   return options;
 }
