@@ -1,8 +1,10 @@
 # Short names for the scripts under tools/, which also run where make is not installed yet.
-.PHONY: demo test check
+.PHONY: demo test check bench
 demo:
 	@tools/demo "$(IN)"
 test:
 	@tools/test
 check:
 	@tools/check fast
+bench:
+	@IN="$(IN)" tools/bench

@@ -16,17 +16,16 @@ Vec3f face_normal(const Mesh& mesh, std::size_t triangle) {
                                            to_double(mesh.positions[v[2]]))));
 }
 
-std::vector<float>* float_stream(Mesh& mesh, Semantic semantic, std::uint32_t components) {
-  for (AttributeStream& stream : mesh.attributes) {
+// The values of the first such stream that are floats; const if the mesh is.
+template <class AnyMesh>
+auto float_stream(AnyMesh& mesh, Semantic semantic, std::uint32_t components)
+    -> decltype(std::get_if<std::vector<float>>(&mesh.attributes[0].values)) {
+  for (auto& stream : mesh.attributes) {
     if (stream.semantic == semantic && stream.components == components) {
       return std::get_if<std::vector<float>>(&stream.values);
     }
   }
   return nullptr;
-}
-
-const std::vector<float>* float_stream(const Mesh& mesh, Semantic semantic, std::uint32_t components) {
-  return float_stream(const_cast<Mesh&>(mesh), semantic, components);
 }
 
 Vec3f normal_at(const std::vector<float>& normals, std::uint32_t wedge) {

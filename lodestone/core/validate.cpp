@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace lodestone {
 
 namespace {
@@ -9,6 +11,22 @@ namespace {
 template <class... Args>
 tl::unexpected<Error> bad(const Mesh& mesh, fmt::format_string<Args...> text, Args&&... args) {
   return fail(ErrorCode::bad_format, fmt::format(text, std::forward<Args>(args)...), mesh.name);
+}
+
+// x * 0 is 0 for finite x and NaN for all others, and a NaN stays in the sum.
+bool all_finite(const std::vector<Vec3f>& positions) {
+  Vec3f sum{};
+  for (const Vec3f& p : positions) sum = {sum.x + p.x * 0, sum.y + p.y * 0, sum.z + p.z * 0};
+  return is_finite(sum);
+}
+
+// 0 for no triangles at all.
+std::uint32_t largest_wedge(const std::vector<Triangle>& triangles) {
+  Triangle most{};
+  for (const Triangle& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) most[k] = std::max(most[k], t[k]);
+  }
+  return std::max({most[0], most[1], most[2]});
 }
 
 }  // namespace
@@ -20,8 +38,11 @@ Result<void> validate(const Mesh& mesh) {
                mesh.positions.size(), mesh.wedge_count(), mesh.triangles.size());
   }
   if (!is_finite(mesh.offset)) return bad(mesh, "the offset is not finite");
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    if (!is_finite(mesh.positions[v])) return bad(mesh, "vertex {} has a coordinate that is not finite", v);
+  // Whether anything is wrong is asked without a branch an element, and where it is only then.
+  if (!all_finite(mesh.positions)) {
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      if (!is_finite(mesh.positions[v])) return bad(mesh, "vertex {} has a coordinate that is not finite", v);
+    }
   }
   for (std::size_t w = 0; w < mesh.wedge_vertex.size(); ++w) {
     if (mesh.wedge_vertex[w] >= mesh.positions.size()) {
@@ -29,9 +50,11 @@ Result<void> validate(const Mesh& mesh) {
     }
   }
   const std::size_t wedges = mesh.wedge_count();
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const std::uint32_t w : mesh.triangles[t]) {
-      if (w >= wedges) return bad(mesh, "triangle {} names wedge {} of {}", t, w, wedges);
+  if (!mesh.triangles.empty() && largest_wedge(mesh.triangles) >= wedges) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      for (const std::uint32_t w : mesh.triangles[t]) {
+        if (w >= wedges) return bad(mesh, "triangle {} names wedge {} of {}", t, w, wedges);
+      }
     }
   }
   const std::size_t groups = std::max<std::size_t>(1, mesh.groups.size());

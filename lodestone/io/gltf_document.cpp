@@ -146,8 +146,8 @@ Result<ByteSpan> load_buffer(Loader& loader, std::size_t index, Json& buffer) {
 }
 
 Result<void> load_buffers(Loader& loader) {
-  Json* buffers = const_cast<Json*>(member(loader.data.json, "buffers"));
-  if (buffers == nullptr || !buffers->is_array()) return {};
+  const auto buffers = loader.data.json.find("buffers");
+  if (buffers == loader.data.json.end() || !buffers->is_array()) return {};
   for (std::size_t i = 0; i < buffers->size(); ++i) {
     if (loader.task.cancelled()) return cancelled_error("reading");
     const Result<ByteSpan> bytes = load_buffer(loader, i, (*buffers)[i]);

@@ -131,7 +131,11 @@ Result<void> check_finite(const Mesh& mesh, std::size_t first, const PrimitiveSo
               source.positions.where, "export the model again");
 }
 
-void append_triangles(Mesh& mesh, const PrimitiveSource& source, std::size_t group, std::size_t first_wedge) {
+void append_triangles(Mesh& mesh, PrimitiveSource& source, std::size_t group, std::size_t first_wedge) {
+  if (mesh.triangles.empty() && first_wedge == 0 && group == 0) {
+    mesh.triangles = std::move(source.triangles);
+    return;
+  }
   const auto base = static_cast<std::uint32_t>(first_wedge);
   if (group > 0) mesh.face_group.resize(mesh.triangles.size(), 0);  // group 0's, which needed none alone
   for (const Triangle& t : source.triangles) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
@@ -183,8 +187,7 @@ AttributeKind attribute_kind(std::string_view name, bool morph) {
 Result<Mesh> read_mesh(const Document::Data& data, std::size_t index, Budget& budget, DracoCache& cache, Model& model,
                        const Task& task) {
   const Json& json = array_member(data.json, "meshes")[index];
-  const Result<std::vector<PrimitiveSource>> primitives =
-      read_primitives(data, index, json, budget, cache, model, task);
+  Result<std::vector<PrimitiveSource>> primitives = read_primitives(data, index, json, budget, cache, model, task);
   if (!primitives) return fail(primitives.error());
 
   Mesh mesh;
@@ -203,10 +206,10 @@ Result<Mesh> read_mesh(const Document::Data& data, std::size_t index, Budget& bu
     return unfolds_too_far(data, "the primitives", place(data, "mesh", index));
   }
   mesh.positions.resize(wedges);
-  mesh.triangles.reserve(triangles);
+  if (primitives->size() > 1) mesh.triangles.reserve(triangles);
   std::size_t first = 0;
   for (std::size_t g = 0; g < primitives->size(); ++g) {
-    const PrimitiveSource& source = (*primitives)[g];
+    PrimitiveSource& source = (*primitives)[g];
     if (source.vertex_count > 0) {
       gather(source.positions, source.vertices, source.vertex_count, &mesh.positions[first].x, 3, 0.0f, task);
       if (const auto good = check_finite(mesh, first, source, task); !good) return fail(good.error());

@@ -167,11 +167,11 @@ Result<std::vector<std::uint32_t>> read_indices(const Document::Data& data, cons
   if (!budget.take(accessor->count * kBytesEach)) return unfolds_too_far(data, "the primitives", where);
   out.resize(accessor->count);
   gather_bits(*accessor, {}, accessor->count, out.data(), 1, {});
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (out[i] >= vertices) {
-      return fail(ErrorCode::bad_format,
-                  fmt::format("index {} is {}, the primitive has {} vertices", i, out[i], vertices), accessor->where);
-    }
+  const auto most = std::max_element(out.begin(), out.end());
+  if (most != out.end() && *most >= vertices) {
+    return fail(ErrorCode::bad_format,
+                fmt::format("index {} is {}, the primitive has {} vertices", most - out.begin(), *most, vertices),
+                accessor->where);
   }
   return out;
 }

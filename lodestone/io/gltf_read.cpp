@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <new>
 #include <utility>
@@ -90,19 +91,25 @@ Result<Model> read_document(std::string bytes, std::string name, const std::file
   return model;
 }
 
+// Four lanes, so that a word need not wait for the one before it.
+std::uint64_t hash_bytes(const void* data, std::size_t bytes) {
+  const auto* p = static_cast<const unsigned char*>(data);
+  std::array<std::uint64_t, 4> lanes{1, 2, 3, 4}, words;
+  for (; bytes >= sizeof words; p += sizeof words, bytes -= sizeof words) {
+    std::memcpy(&words, p, sizeof words);
+    for (std::size_t k = 0; k < 4; ++k) lanes[k] = mix_bits(lanes[k] ^ words[k]);
+  }
+  words = {};
+  if (bytes > 0) std::memcpy(&words, p, bytes);
+  for (std::size_t k = 0; k < 4; ++k) lanes[0] = mix_bits(mix_bits(lanes[0] ^ lanes[k]) ^ words[k]);
+  return lanes[0];
+}
+
 }  // namespace
 
 std::uint64_t fingerprint(const Mesh& mesh) {
   std::uint64_t hash = mix_bits(mesh.positions.size());
-  const auto add = [&](const void* data, std::size_t bytes) {
-    const auto* p = static_cast<const unsigned char*>(data);
-    std::uint64_t word = 0;
-    for (std::size_t i = 0; i < bytes; i += 8) {
-      word = 0;
-      std::memcpy(&word, p + i, std::min<std::size_t>(8, bytes - i));
-      hash = mix_bits(hash ^ word);
-    }
-  };
+  const auto add = [&](const void* data, std::size_t bytes) { hash = mix_bits(hash ^ hash_bytes(data, bytes)); };
   add(mesh.positions.data(), mesh.positions.size() * sizeof(Vec3f));
   add(mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
   add(mesh.wedge_vertex.data(), mesh.wedge_vertex.size() * 4);

@@ -10,6 +10,7 @@
 #include <map>
 #include <new>
 #include <optional>
+#include <span>
 
 #include "lodestone/base/file.h"
 #include "lodestone/base/units.h"
@@ -31,7 +32,8 @@ std::string_view as_text(ByteSpan bytes) { return {reinterpret_cast<const char*>
 
 // All that writing one file needs.
 struct Writer {
-  const Ladder& ladder;
+  const Model& original;
+  std::span<const Level> levels;  // [0] stands for the original
   const WriteOptions& options;
   const Document::Data* document;  // null: from another format
   Json json;
@@ -42,14 +44,15 @@ struct Writer {
   std::vector<bool> rewritten;      // meshes whose level 0 is written anew
 };
 
-Result<void> check(const Ladder& ladder, const std::filesystem::path& path, Compression compression) {
-  for (std::size_t level = 1; level < ladder.levels.size(); ++level) {
-    const Model& model = ladder.levels[level].model;
-    if (model.meshes.size() != ladder.original.meshes.size()) {
-      return fail(ErrorCode::bad_argument,
-                  fmt::format("level {} has {} meshes, the original {}", level, model.meshes.size(),
-                              ladder.original.meshes.size()),
-                  path.string());
+Result<void> check(const Model& original, std::span<const Level> levels, const std::filesystem::path& path,
+                   Compression compression) {
+  for (std::size_t level = 1; level < levels.size(); ++level) {
+    const Model& model = levels[level].model;
+    if (model.meshes.size() != original.meshes.size()) {
+      return fail(
+          ErrorCode::bad_argument,
+          fmt::format("level {} has {} meshes, the original {}", level, model.meshes.size(), original.meshes.size()),
+          path.string());
     }
   }
   const bool missing =
@@ -70,7 +73,7 @@ bool has_draco_primitive(const Json& mesh) {
 
 // Meshes whose level 0 cannot keep the document's own accessors. One that never had a triangle stays as it is.
 std::vector<bool> find_rewritten(const Writer& w) {
-  const std::vector<Mesh>& meshes = w.ladder.original.meshes;
+  const std::vector<Mesh>& meshes = w.original.meshes;
   std::vector<bool> out(meshes.size(), true);
   for (std::size_t m = 0; w.document != nullptr && m < meshes.size(); ++m) {
     const bool changed = w.document->fingerprints[m] != fingerprint(meshes[m]);
@@ -110,7 +113,7 @@ void begin_from_document(Writer& w) {
   w.json = w.document->json;
   w.instance_nodes = w.document->instance_nodes;
   for (const Json& mesh : array_member(w.json, "meshes")) w.source_meshes.push_back(mesh);
-  w.pack.emplace(w.json, w.options.compression, w.ladder.levels.size());
+  w.pack.emplace(w.json, w.options.compression, w.levels.size());
   w.rewritten = find_rewritten(w);
   repair_accessors(*w.document, w.json);
   keep_views(w);
@@ -122,18 +125,18 @@ void begin_from_document(Writer& w) {
 }
 
 void begin_fresh(Writer& w) {
-  const Model& original = w.ladder.original;
+  const Model& original = w.original;
   w.json = make_fresh_document(original);
   for (std::size_t i = 0; i < original.instances.size(); ++i) w.instance_nodes.push_back(i);
   for (const Json& mesh : w.json["meshes"]) w.source_meshes.push_back(mesh);
-  w.pack.emplace(w.json, w.options.compression, w.ladder.levels.size());
+  w.pack.emplace(w.json, w.options.compression, w.levels.size());
   w.rewritten = find_rewritten(w);
   add_fresh_materials(original, w.json, *w.pack);
 }
 
 // The primitives of mesh `index` with the geometry of `mesh`; points and lines stay as they are.
 Json pack_primitives(Writer& w, std::size_t level, const Mesh& mesh, std::size_t index) {
-  const bool flip_v = w.document == nullptr && !w.ladder.original.uv_origin_top;
+  const bool flip_v = w.document == nullptr && !w.original.uv_origin_top;
   const std::vector<AttributePlan> plans = plan_attributes(mesh, w.document != nullptr, flip_v, w.report.warnings);
   GroupIndexer groups(mesh);
   Json out = Json::array();
@@ -176,7 +179,7 @@ void retire_mesh(Json& json, std::size_t mesh) {
 
 // Level 0: the document's own accessors where they can stay.
 Result<void> write_original_meshes(Writer& w, const Task& task) {
-  const std::vector<Mesh>& meshes = w.ladder.original.meshes;
+  const std::vector<Mesh>& meshes = w.original.meshes;
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     if (task.cancelled()) return cancelled_error("writing");
     if (!w.rewritten[m]) continue;
@@ -193,8 +196,8 @@ Result<void> write_original_meshes(Writer& w, const Task& task) {
 
 // The JSON mesh of each mesh at a level: kNone where nothing is left.
 Result<std::vector<std::size_t>> write_level_meshes(Writer& w, std::size_t level, const Task& task) {
-  const std::vector<Mesh>& meshes = w.ladder.levels[level].model.meshes;
-  const std::vector<std::uint32_t> uses = instance_counts(w.ladder.original);
+  const std::vector<Mesh>& meshes = w.levels[level].model.meshes;
+  const std::vector<std::uint32_t> uses = instance_counts(w.original);
   std::vector<std::size_t> out(meshes.size(), kNone);
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     if (uses[m] == 0) continue;
@@ -213,7 +216,7 @@ Result<std::vector<std::size_t>> write_level_meshes(Writer& w, std::size_t level
 }
 
 Result<void> write_levels(Writer& w, const Task& task) {
-  const std::size_t levels = w.ladder.levels.size();
+  const std::size_t levels = w.levels.size();
   std::vector<std::vector<std::size_t>> meshes;  // level - 1, mesh
   for (std::size_t level = 1; level < levels; ++level) {
     Result<std::vector<std::size_t>> one = write_level_meshes(w, level, task);
@@ -223,12 +226,12 @@ Result<void> write_levels(Writer& w, const Task& task) {
   }
   if (levels < 2) return {};
   std::vector<bool> served(w.json["nodes"].size(), false);
-  for (std::size_t i = 0; i < w.ladder.original.instances.size(); ++i) {
+  for (std::size_t i = 0; i < w.original.instances.size(); ++i) {
     const std::size_t node = w.instance_nodes[i];
     if (served[node]) continue;  // several instances of one node: EXT_mesh_gpu_instancing
     served[node] = true;
     std::vector<std::size_t> of_node;
-    for (const auto& level : meshes) of_node.push_back(level[w.ladder.original.instances[i].mesh]);
+    for (const auto& level : meshes) of_node.push_back(level[w.original.instances[i].mesh]);
     const bool told = i < w.options.screen_coverage.size();
     add_node_levels(w.json, node, of_node, told ? w.options.screen_coverage[i] : std::vector<double>{},
                     w.report.warnings);
@@ -317,14 +320,14 @@ void report_levels(Writer& w, const std::filesystem::path& path) {
   std::uint64_t coarser = 0;
   for (std::size_t level = 1; level < w.report.level_bytes.size(); ++level) coarser += w.report.level_bytes[level];
   w.report.level_bytes[0] = w.report.total_bytes - coarser;
-  w.report.files.assign(w.ladder.levels.size(), path);
+  w.report.files.assign(w.levels.size(), path);
 }
 
-Result<WriteReport> write(const Ladder& ladder, const std::filesystem::path& path, const WriteOptions& options,
-                          const Task& task) {
-  if (const Result<void> ok = check(ladder, path, options.compression); !ok) return fail(ok.error());
-  const Document* document = ladder.original.document.get();
-  Writer w{ladder, options, document != nullptr ? &document->data() : nullptr, {}, {}, {}, {}, {}, {}};
+Result<WriteReport> write(const Model& original, std::span<const Level> levels, const std::filesystem::path& path,
+                          const WriteOptions& options, const Task& task) {
+  if (const Result<void> ok = check(original, levels, path, options.compression); !ok) return fail(ok.error());
+  const Document* document = original.document.get();
+  Writer w{original, levels, options, document != nullptr ? &document->data() : nullptr, {}, {}, {}, {}, {}, {}};
   if (w.document != nullptr) {
     begin_from_document(w);
   } else {
@@ -343,12 +346,10 @@ Result<WriteReport> write(const Ladder& ladder, const std::filesystem::path& pat
   return std::move(w.report);
 }
 
-}  // namespace
-
-Result<WriteReport> write_gltf(const Ladder& ladder, const std::filesystem::path& path, const WriteOptions& options,
-                               Task task) {
+Result<WriteReport> guarded_write(const Model& original, std::span<const Level> levels,
+                                  const std::filesystem::path& path, const WriteOptions& options, const Task& task) {
   try {
-    return write(ladder, path, options, task);
+    return write(original, levels, path, options, task);
   } catch (const Json::exception&) {  // reading looks at what it needs only; the rest may be of any type
     return fail(ErrorCode::bad_format, "the glTF document that the model came from has members of wrong types",
                 path.string(), "repair the input, or convert it to another format first");
@@ -356,6 +357,19 @@ Result<WriteReport> write_gltf(const Ladder& ladder, const std::filesystem::path
     return fail(ErrorCode::out_of_memory, "needs more memory than there is", path.string(),
                 "use a machine with more, or write fewer levels");
   }
+}
+
+}  // namespace
+
+Result<WriteReport> write_gltf(const Ladder& ladder, const std::filesystem::path& path, const WriteOptions& options,
+                               Task task) {
+  return guarded_write(ladder.original, ladder.levels, path, options, task);
+}
+
+Result<WriteReport> write_gltf(const Model& model, const std::filesystem::path& path, const WriteOptions& options,
+                               Task task) {
+  const Level alone;
+  return guarded_write(model, std::span(&alone, 1), path, options, task);
 }
 
 }  // namespace lodestone::io

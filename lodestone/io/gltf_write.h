@@ -10,7 +10,7 @@
 
 namespace lodestone::io {
 
-/// Writes a ladder as "name.glb" (one file) or "name.gltf" + "name.bin"; a ladder of level 0 alone is a plain model.
+/// Writes a ladder as "name.glb" (one file) or "name.gltf" + "name.bin".
 ///
 /// From a glTF document, what level 0 had comes out as it went in; its meshes' own accessors are kept unless the mesh
 /// was changed, was Draco-compressed, or compression is asked for. Coarser levels: each drawn node that carries a mesh
@@ -27,5 +27,9 @@ namespace lodestone::io {
 /// (compression not built in), bad_format (the original's JSON has members of wrong types), out_of_memory, cancelled.
 Result<WriteReport> write_gltf(const Ladder& ladder, const std::filesystem::path& path,
                                const WriteOptions& options = {}, Task task = {});
+
+/// Writes one model, without levels.
+Result<WriteReport> write_gltf(const Model& model, const std::filesystem::path& path, const WriteOptions& options = {},
+                               Task task = {});
 
 }  // namespace lodestone::io

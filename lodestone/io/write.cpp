@@ -36,14 +36,6 @@ tl::unexpected<Error> unknown_extension(const std::filesystem::path& path) {
               fmt::format("these can: {}", fmt::join(kExtensions, " ")));
 }
 
-// A ladder of the original alone: what write_gltf takes for a plain model.
-Ladder as_ladder(const Model& model) {
-  Ladder ladder;
-  ladder.original = model;
-  ladder.levels.resize(1);
-  return ladder;
-}
-
 // All levels (each may be several files) are written into a staging folder first: all of them appear, or none.
 Result<WriteReport> write_level_files(const Ladder& ladder, const std::filesystem::path& pattern,
                                       const WriteOptions& options, const Task& task) {
@@ -76,7 +68,7 @@ bool is_writable_extension(std::string_view extension) {
 Result<WriteReport> write_model(const Model& model, const std::filesystem::path& path, const WriteOptions& options,
                                 Task task) {
   const std::string e = lower_extension(path);
-  if (is_gltf(e)) return write_gltf(as_ladder(model), path, options, task);
+  if (is_gltf(e)) return write_gltf(model, path, options, task);
   if (options.compression != Compression::none) {
     return fail(ErrorCode::bad_argument, fmt::format("{} files hold no compressed geometry", e), path.string(),
                 "write .glb or leave --compress off");
