@@ -15,19 +15,36 @@ std::uint32_t wedge_at(const State& state, std::uint32_t triangle, std::uint32_t
   return v[0] == vertex ? w[0] : v[1] == vertex ? w[1] : w[2];
 }
 
+// One closed fan of triangles that turn the same way, without a feature edge: what most vertices are.
+bool is_plain(const State& state, std::uint32_t v, std::span<const Corner> corners) {
+  const bool plain_surface = state.wedges.empty() && state.groups.empty();
+  Fan fan;
+  if (corners.empty() || !fan.load(corners)) return false;
+  std::uint32_t at = 0;
+  for (std::size_t step = 1; step <= corners.size(); ++step) {
+    const std::uint32_t before = fan.before(corners[at].a);
+    if (before == kNone) return false;
+    const std::uint32_t both[2] = {corners[at].triangle, corners[before].triangle};
+    if (!plain_surface && is_feature_edge(state, v, corners[at].a, both)) return false;
+    at = before;
+    if (at == 0) return step == corners.size();
+  }
+  return false;
+}
+
 // A vertex's triangles, cut along feature edges into fans.
-class Star {
+class Fans {
  public:
-  explicit Star(const State& state) : state_(state) {}
+  explicit Fans(const State& state) : state_(state) {}
 
   void look_at(std::uint32_t v) {
     v_ = v;
-    const auto star = state_.star_of(v);
+    const auto star = state_.segment(v);
     parent_.resize(star.size());
     std::iota(parent_.begin(), parent_.end(), 0U);
     spokes_.clear();
     for (std::uint32_t i = 0; i < star.size(); ++i) {
-      for (const std::uint32_t u : state_.triangles[star[i]]) {
+      for (const std::uint32_t u : state_.triangles[star[i] >> 2]) {
         if (u != v) spokes_.push_back({u, i});
       }
     }
@@ -78,8 +95,8 @@ class Star {
 
   bool is_feature(std::size_t begin, std::size_t end) const {
     if (end - begin != 2) return true;
-    const auto star = state_.star_of(v_);
-    const std::uint32_t both[2] = {star[spokes_[begin].triangle], star[spokes_[begin + 1].triangle]};
+    const auto star = state_.segment(v_);
+    const std::uint32_t both[2] = {star[spokes_[begin].triangle] >> 2, star[spokes_[begin + 1].triangle] >> 2};
     return is_feature_edge(state_, v_, spokes_[begin].neighbour, both);
   }
 
@@ -126,10 +143,14 @@ void classify_vertices(State& state, const EdgeCollapseOptions& options, const T
   state.classes.assign(n, VertexClass::interior);
   state.causes.assign(n, LockCause::none);
   parallel_for(n, 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
-    Star star(state);  // its memory serves all vertices of the chunk
+    Fans fans(state);  // their memory serves all vertices of the chunk
+    std::vector<Corner> memory;
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
-      star.look_at(v);
-      const Star::Answer answer = star.classify();
+      Fans::Answer answer;
+      if (!is_plain(state, v, gather(state, v, memory).corners)) {
+        fans.look_at(v);
+        answer = fans.classify();
+      }
       LockCause cause = answer.cause;
       if (!options.locked.empty() && options.locked[state.original[v]] != 0) {
         cause = LockCause::by_request;

@@ -5,9 +5,6 @@
 
 namespace lodestone::simplify::detail {
 
-using Float4 = float __attribute__((vector_size(16)));
-using Int4 = int __attribute__((vector_size(16)));
-
 inline float select(bool condition, float a, float b) { return condition ? a : b; }
 inline Float4 select(Int4 condition, Float4 a, Float4 b) { return condition ? a : b; }
 
@@ -123,23 +120,6 @@ struct Placement {
 };
 
 inline Sym3<float> matrix_of(const Quadric& q) { return {q.xx, q.xy, q.xz, q.yy, q.yz, q.zz}; }
-
-/// One edge. `shared`: the triangles that have both vertices, at most two count.
-inline Placement place_freely(const Quadric& v, const Quadric& w, const TriangleNormal* shared, std::size_t count) {
-  EdgeTerms<float> terms{};
-  terms.a0 = matrix_of(v);
-  terms.a1 = matrix_of(w);
-  terms.g0 = {v.volume.x, v.volume.y, v.volume.z};
-  terms.g1 = {w.volume.x, w.volume.y, w.volume.z};
-  for (std::size_t t = 0; t < 2 && t < count; ++t) {
-    terms.n[t] = {shared[t].n.x, shared[t].n.y, shared[t].n.z};
-    terms.inverse_length[t] = shared[t].inverse_length;
-  }
-  const Vec3f e = w.position - v.position;
-  terms.edge = {e.x, e.y, e.z};
-  const EdgePlacement<float> p = place_freely(terms);
-  return {{v.position.x + p.position.x, v.position.y + p.position.y, v.position.z + p.position.z}, p.cost};
-}
 
 /// `kept` stays where it is.
 inline Placement place_at(const Quadric& kept, const Quadric& removed) {

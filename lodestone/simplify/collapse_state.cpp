@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/core/weld.h"
@@ -13,59 +12,6 @@ namespace lodestone::simplify::detail {
 namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 15;
-
-// Degenerate triangles and those that repeat an earlier one in the same direction: they carry no surface of their own.
-std::vector<std::uint32_t> find_dropped(const Mesh& mesh, const Task& task) {
-  struct Face {
-    Triangle v;  // rotated so that the lowest vertex comes first: the direction stays
-    std::uint32_t triangle;
-  };
-  std::vector<std::uint32_t> dropped;
-  std::vector<Face> faces;
-  // Only triangles that share their lowest vertex with their likeness can be doubled: few meshes need the full sort.
-  std::vector<std::uint64_t> keys(mesh.triangles.size());
-  parallel_for(mesh.triangles.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t t = begin; t < end; ++t) {
-      Triangle v = mesh.vertices_of(t);
-      std::sort(v.begin(), v.end());
-      keys[t] = v[0] == v[1] || v[1] == v[2]
-                    ? ~std::uint64_t{0}
-                    : (std::uint64_t{v[0]} * 0x9e3779b97f4a7c15ULL) ^ (std::uint64_t{v[1]} * 0xc2b2ae3d27d4eb4fULL) ^
-                          (std::uint64_t{v[2]} * 0x165667b19e3779f9ULL);
-    }
-  });
-  // A bit a hash bucket seen once, another seen twice: candidates are those in buckets seen twice.
-  const std::size_t buckets = std::max<std::size_t>(64, mesh.triangles.size() * 8);
-  std::vector<std::uint64_t> once(buckets / 64 + 1, 0), twice(buckets / 64 + 1, 0);
-  const auto bucket_of = [&](std::uint64_t key) {
-    return static_cast<std::size_t>((static_cast<unsigned __int128>(key * 0xff51afd7ed558ccdULL) * buckets) >> 64);
-  };
-  for (const std::uint64_t key : keys) {
-    if (key == ~std::uint64_t{0}) continue;
-    const std::size_t b = bucket_of(key);
-    const std::uint64_t bit = std::uint64_t{1} << (b % 64);
-    twice[b / 64] |= once[b / 64] & bit;
-    once[b / 64] |= bit;
-  }
-  for (std::size_t t = 0; t < keys.size(); ++t) {
-    if (keys[t] == ~std::uint64_t{0}) {
-      dropped.push_back(static_cast<std::uint32_t>(t));
-      continue;
-    }
-    const std::size_t b = bucket_of(keys[t]);
-    if ((twice[b / 64] >> (b % 64) & 1) == 0) continue;
-    Triangle v = mesh.vertices_of(t);
-    std::rotate(v.begin(), std::min_element(v.begin(), v.end()), v.end());
-    faces.push_back({v, static_cast<std::uint32_t>(t)});
-  }
-  std::sort(faces.begin(), faces.end(),
-            [](const Face& a, const Face& b) { return a.v != b.v ? a.v < b.v : a.triangle < b.triangle; });
-  for (std::size_t i = 1; i < faces.size(); ++i) {
-    if (faces[i].v == faces[i - 1].v) dropped.push_back(faces[i].triangle);
-  }
-  std::sort(dropped.begin(), dropped.end());
-  return dropped;
-}
 
 // Interleaves the low 10 bits of x, y and z.
 std::uint32_t morton_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
@@ -101,16 +47,22 @@ std::vector<std::uint32_t> space_filling_order(const Mesh& mesh, const Box3f& bo
 }
 
 // Center of the box; scale = the power of two nearest below the mean edge length, so that areas are near one.
-void choose_frame(State& state, const Mesh& mesh, const Box3f& box, const Mat4d& metric) {
+void choose_frame(State& state, const Mesh& mesh, const Box3f& box, const Mat4d& metric, const Task& task) {
   const bool regular = std::isfinite(metric.determinant3()) && metric.determinant3() != 0;
   state.metric = regular ? metric.linear() : Mat4d{};
   state.metric_inverse = state.metric.inverse3();
   state.center = to_double(box.min) * 0.5 + to_double(box.max) * 0.5;
-  double sum = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Triangle v = mesh.vertices_of(t);
-    sum += length(state.metric.direction(to_double(mesh.positions[v[0]]) - to_double(mesh.positions[v[1]])));
-  }
+  const double sum = parallel_reduce(
+      mesh.triangles.size(), kChunk, task, 0.0,
+      [&](std::size_t begin, std::size_t end) {
+        double part = 0;
+        for (std::size_t t = begin; t < end; ++t) {
+          const Triangle v = mesh.vertices_of(t);
+          part += length(state.metric.direction(to_double(mesh.positions[v[0]]) - to_double(mesh.positions[v[1]])));
+        }
+        return part;
+      },
+      [](double x, double y) { return x + y; });
   const double mean = sum / static_cast<double>(std::max<std::size_t>(1, mesh.triangles.size()));
   int exponent = 0;
   std::frexp(mean > 0 ? mean : 1.0, &exponent);
@@ -119,7 +71,6 @@ void choose_frame(State& state, const Mesh& mesh, const Box3f& box, const Mat4d&
 
 void take_wedges(State& state, const Mesh& mesh, const Task& task) {
   if (mesh.wedge_vertex.empty() && mesh.attributes.empty()) return;
-  state.wedges.reserve(state.triangles.size());
   std::vector<bool> compared(mesh.attributes.size());
   for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
     const AttributeStream& stream = mesh.attributes[i];
@@ -136,15 +87,101 @@ void take_wedges(State& state, const Mesh& mesh, const Task& task) {
   state.chart = wedge_classes(mesh, compared, task);
 }
 
+// Triangles sorted by their lowest vertices; those that carry no surface of their own are marked and come last.
+struct TriangleOrder {
+  std::vector<std::uint32_t> triangle;  // of the input
+  std::vector<std::uint32_t> first;     // for each vertex, where those begin whose lowest it is; one more: the marked
+};
+
+TriangleOrder sort_triangles(const std::vector<Triangle>& triangles, std::size_t vertices) {
+  TriangleOrder out;
+  out.first.assign(vertices + 2, 0);
+  // Degenerate ones count as of a vertex past the last.
+  const auto lowest = [&](const Triangle& c) {
+    const bool degenerate = c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
+    return degenerate ? static_cast<std::uint32_t>(vertices) : std::min({c[0], c[1], c[2]});
+  };
+  for (const Triangle& c : triangles) ++out.first[lowest(c) + 1];
+  for (std::size_t v = 0; v <= vertices; ++v) out.first[v + 1] += out.first[v];
+  out.triangle.resize(triangles.size());
+  std::vector<std::uint32_t> next(out.first.begin(), out.first.end() - 1);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) out.triangle[next[lowest(triangles[t])]++] = t;
+  return out;
+}
+
+// Marks, with kNone, triangles that repeat an earlier one in the same direction.
+void mark_doubles(const std::vector<Triangle>& triangles, TriangleOrder& order, const Task& task) {
+  const auto turned = [&](std::uint32_t t) {  // the lowest vertex first: the direction stays
+    Triangle c = triangles[t];
+    std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
+    return std::pair<std::uint32_t, std::uint32_t>{c[1], c[2]};
+  };
+  parallel_for(order.first.size() - 2, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto first = order.triangle.begin() + order.first[v], last = order.triangle.begin() + order.first[v + 1];
+      if (last - first < 2) continue;
+      const auto before = [&](std::uint32_t s, std::uint32_t t) {
+        return std::pair(turned(s), s) < std::pair(turned(t), t);
+      };
+      std::sort(first, last, before);
+      std::uint32_t kept = *first;
+      for (auto i = first + 1; i != last; ++i) {
+        if (turned(*i) == turned(kept)) {
+          *i = kNone;
+        } else {
+          kept = *i;
+        }
+      }
+    }
+  });
+}
+
+// The triangles that take part, by their lowest vertices, so that those of a star are near each other.
+void take_triangles(State& state, const Mesh& mesh, const std::vector<std::uint32_t>& place, const Task& task) {
+  std::vector<Triangle> renamed(mesh.triangles.size());
+  parallel_for(renamed.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const Triangle v = mesh.vertices_of(t);
+      renamed[t] = {place[v[0]], place[v[1]], place[v[2]]};
+    }
+  });
+  TriangleOrder order = sort_triangles(renamed, mesh.vertex_count());
+  mark_doubles(renamed, order, task);
+  std::vector<std::uint32_t>& kept = order.triangle;
+  kept.resize(order.first[mesh.vertex_count()]);
+  std::erase(kept, kNone);
+  if (kept.size() < renamed.size()) {
+    std::vector<std::uint8_t> taken(renamed.size(), 0);
+    for (const std::uint32_t t : kept) taken[t] = 1;
+    for (std::uint32_t t = 0; t < taken.size(); ++t) {
+      if (taken[t] == 0) state.dropped.push_back(t);
+    }
+  }
+  const std::size_t n = kept.size();
+  const bool knows_wedges = !mesh.wedge_vertex.empty() || !mesh.attributes.empty();
+  state.triangles.resize(n);
+  state.normals.resize(n + 1);
+  if (knows_wedges) state.wedges.resize(n);
+  if (!mesh.face_group.empty()) state.groups.resize(n);
+  parallel_for(n, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Triangle& c = renamed[kept[i]];
+      state.triangles[i] = c;
+      state.normals[i] = triangle_normal(state.positions[c[0]], state.positions[c[1]], state.positions[c[2]]);
+      if (knows_wedges) state.wedges[i] = mesh.triangles[kept[i]];
+      if (!mesh.face_group.empty()) state.groups[i] = mesh.face_group[kept[i]];
+    }
+  });
+}
+
 }  // namespace
 
 Result<State> make_state(const Mesh& mesh, const EdgeCollapseOptions& options, const Task& task) {
   State state;
-  state.dropped = find_dropped(mesh, task);
   Box3f box;
   for (const Vec3f p : mesh.positions) box.add(p);
   if (box.empty()) box.add(Vec3f{});
-  choose_frame(state, mesh, box, options.metric);
+  choose_frame(state, mesh, box, options.metric, task);
   state.original = space_filling_order(mesh, box, task);
   if (task.cancelled()) return cancelled_error("edge collapse");
 
@@ -159,37 +196,36 @@ Result<State> make_state(const Mesh& mesh, const EdgeCollapseOptions& options, c
       state.positions[i] = to_float(state.metric.direction(to_double(mesh.positions[v]) - state.center) * inverse);
     }
   });
-  const bool knows_wedges = !mesh.wedge_vertex.empty() || !mesh.attributes.empty();
-  const bool knows_groups = !mesh.face_group.empty();
-  state.triangles.reserve(mesh.triangles.size() - state.dropped.size());
   take_wedges(state, mesh, task);
-  auto next_dropped = state.dropped.begin();
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (next_dropped != state.dropped.end() && *next_dropped == t) {
-      ++next_dropped;
-      continue;
-    }
-    const Triangle v = mesh.vertices_of(t);
-    state.triangles.push_back({place[v[0]], place[v[1]], place[v[2]]});
-    if (knows_wedges) state.wedges.push_back(mesh.triangles[t]);
-    if (knows_groups) state.groups.push_back(mesh.face_group[t]);
-  }
+  take_triangles(state, mesh, place, task);
   classify_vertices(state, options, task);
   if (task.cancelled()) return cancelled_error("edge collapse");
   return state;
 }
 
 void build_stars(State& state, const Task& task) {
-  state.star_first.assign(state.positions.size() + 1, 0);
+  const std::size_t n = state.positions.size();
+  state.star_first.assign(n + 1, 0);
   for (const Triangle& t : state.triangles) {
     for (const std::uint32_t v : t) ++state.star_first[v];
   }
   state.star.resize(exclusive_scan(state.star_first, task));
   for (std::uint32_t t = 0; t < state.triangles.size(); ++t) {
-    for (const std::uint32_t v : state.triangles[t]) state.star[state.star_first[v]++] = t;
+    for (std::uint32_t k = 0; k < 3; ++k) state.star[state.star_first[state.triangles[t][k]]++] = t << 2 | k;
   }
-  for (std::size_t v = state.positions.size(); v > 0; --v) state.star_first[v] = state.star_first[v - 1];
+  for (std::size_t v = n; v > 0; --v) state.star_first[v] = state.star_first[v - 1];
   state.star_first[0] = 0;
+  state.next.resize(n);
+  state.last.resize(n);
+  state.notes.resize(n);
+  state.zone.resize(n);
+  parallel_for(n, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t v = begin; v < end; ++v) {
+      state.last[v] = static_cast<std::uint32_t>(v);
+      state.notes[v] = {};
+      state.zone[v] = state.star_first[v + 1] - state.star_first[v] > kMaxValence ? kHeavy : 0;
+    }
+  });
 }
 
 }  // namespace lodestone::simplify::detail

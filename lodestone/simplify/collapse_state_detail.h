@@ -1,8 +1,11 @@
 // The working mesh of an edge-collapse run: flat arrays, compacted after every pass.
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lodestone/base/task.h"
@@ -11,6 +14,9 @@
 #include "lodestone/simplify/edge_collapse.h"
 
 namespace lodestone::simplify::detail {
+
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = int __attribute__((vector_size(16)));
 
 /// What a vertex may do. A *feature edge* is a border, a seam, an edge between two face groups or a non-manifold edge.
 /// The class never changes: features collapse only along themselves.
@@ -28,7 +34,11 @@ struct alignas(16) TriangleNormal {
   Vec3f n;
   float inverse_length = 0;
 };
-TriangleNormal triangle_normal(Vec3f a, Vec3f b, Vec3f c);
+inline TriangleNormal triangle_normal(Vec3f a, Vec3f b, Vec3f c) {
+  const Vec3f n = cross(b - a, c - a);
+  const float l = length(n);
+  return {n, l > 0 ? 1 / l : 0};
+}
 
 /// Sum over a vertex's triangles about the vertex itself, where all linear terms vanish (memoryless, Lindstrom & Turk
 /// 1998). Each triangle counts n n^T / |n| with n its cross product: squared distance times twice the area. 48 bytes.
@@ -42,11 +52,31 @@ struct alignas(16) Quadric {
 struct Step {
   std::uint32_t kept, removed;  ///< vertices of the input mesh
   Vec3f position;               ///< of `kept`, working frame; unused when !moved
-  float cost;
-  float error;  ///< largest distance of the new position to the planes around, working frame
+  float error;  ///< how far the surface has moved here, about: largest distance to the planes around, working frame
   std::uint32_t first_wedge, wedge_count;
   std::uint32_t faces;
+  std::uint32_t order;  ///< place in the pass's record: never below that of a step that this one builds on
   bool moved;
+};
+
+/// What a pass notes about a vertex. 16 bytes.
+struct Notes {
+  std::uint32_t mark = 0;        ///< scratch of the link condition
+  std::uint32_t touched_at = 0;  ///< collapse that last changed its star or a position in it
+  std::uint32_t merged_at = 0;   ///< collapse that last merged a vertex into it; kNone once it has gone itself
+  std::uint32_t order = 0;       ///< largest Step::order around it
+};
+
+/// Where in the division of work a vertex lies.
+enum Zone : std::uint8_t {
+  kInFirst = 1,   ///< its whole ring is in its range of the first cut, so nobody else meets it there
+  kInSecond = 2,  ///< the same of the second cut, half a range on
+  kHeavy = 4,     ///< has more than kMaxValence triangles
+};
+
+/// A triangle as a vertex sees it: (the vertex, a, b) in its direction.
+struct Corner {
+  std::uint32_t a, b, triangle;
 };
 
 struct State {
@@ -55,33 +85,43 @@ struct State {
   Mat4d metric, metric_inverse;
   double scale = 1;
 
-  // The mesh as it is between passes; vertices keep a space-filling order so that neighbours are near in memory.
+  // The mesh as it is at any moment, compacted between passes. Vertices keep a space-filling order, triangles that of
+  // their lowest vertices, so that neighbours are near in memory. A triangle that has vanished names kNone.
   std::vector<Vec3f> positions;
   std::vector<VertexClass> classes;
   std::vector<std::uint32_t> original;  ///< vertex of the input mesh
   std::vector<Triangle> triangles;      ///< vertices
+  std::vector<TriangleNormal> normals;  ///< of the triangles, zero for vanished ones; one more at the end, zero
   std::vector<Triangle> wedges;         ///< wedges of the input mesh; empty when the run need not know them
   std::vector<std::uint32_t> groups;    ///< face group of each triangle; empty when there is one
-  std::vector<std::uint32_t> dropped;   ///< input triangles that take no part
 
   // About the input's wedges; empty as above.
   std::vector<std::uint32_t> chart;  ///< class of each wedge with normals and tangents left out: a change is a seam
   std::vector<Vec3f> wedge_normals;  ///< of the input; empty when it has none
 
-  std::vector<LockCause> causes;  ///< one a vertex of the input
+  std::vector<std::uint32_t> dropped;  ///< input triangles that take no part
+  std::vector<LockCause> causes;       ///< one a vertex of the input
 
-  // Rebuilt every pass.
-  std::vector<std::uint32_t> star_first, star;  ///< triangles around each vertex
-  std::vector<TriangleNormal> normals;          ///< of the triangles at the pass's start, and a last one of zeros
+  // Rebuilt every pass. A vertex's star is the segment that it began the pass with, then those of the vertices that
+  // have merged into it: v, next[v], ... up to last[v]. Each entry is a triangle's number times 4, plus which of its
+  // corners the vertex is.
+  std::vector<std::uint32_t> star_first, star;
+  std::vector<std::uint32_t> next, last;
   std::vector<Quadric> quadrics;
-  std::vector<std::uint8_t> inner;    ///< the vertex's whole ring lies in its range (see vertices_per_range)
-  std::vector<std::uint32_t> remap;   ///< vertex -> the one that it has merged into in this pass
-  std::vector<std::uint8_t> done;     ///< endpoint of a collapse of this pass
-  std::vector<std::uint8_t> touched;  ///< its star changed in this pass: quadric and costs are stale
-  std::vector<std::uint32_t> mark;    ///< scratch of the link condition
+  std::vector<std::uint8_t> zone;  ///< bits of Zone
+  std::vector<Notes> notes;
+  float mean_area = 0;  ///< of the triangles, doubled
 
-  std::span<const std::uint32_t> star_of(std::uint32_t v) const {
-    return std::span(star).subspan(star_first[v], star_first[v + 1] - star_first[v]);
+  std::span<const std::uint32_t> segment(std::uint32_t v) const {
+    return {star.data() + star_first[v], star.data() + star_first[v + 1]};
+  }
+  /// Calls use(triangle) for each triangle of the star, vanished ones too.
+  template <class Use>
+  void each_in_star(std::uint32_t v, Use use) const {
+    for (std::uint32_t s = v;; s = next[s]) {
+      for (std::uint32_t i = star_first[s]; i < star_first[s + 1]; ++i) use(star[i] >> 2);
+      if (s == last[v]) return;
+    }
   }
 };
 
@@ -89,83 +129,192 @@ struct State {
 /// bounds time.
 inline constexpr std::size_t kMaxValence = 512;
 
-/// Builds the working mesh: frame, order, classes. Errors: cancelled.
+/// Star entries have two bits for the corner.
+inline constexpr std::size_t kMaxTriangles = (std::size_t{1} << 30) - 1;
+
+/// Builds the working mesh: frame, order, classes, stars. Errors: cancelled.
 Result<State> make_state(const Mesh& mesh, const EdgeCollapseOptions& options, const Task& task);
 
 /// Fills classes and causes from the working mesh.
 void classify_vertices(State& state, const EdgeCollapseOptions& options, const Task& task);
 
-/// Builds star_first and star from triangles. O(triangles).
+/// Builds the stars from triangles, and what the pass knows of vertices. O(triangles).
 void build_stars(State& state, const Task& task);
+
+/// The live triangles around a vertex, in the order of its segments. `memory` is where they go.
+struct Star {
+  std::span<const Corner> corners;
+  std::size_t seen;  ///< with vanished ones
+};
+Star gather(const State& state, std::uint32_t v, std::vector<Corner>& memory);
+
+/// Finds what follows what around a vertex of up to 16 triangles.
+class Fan {
+ public:
+  /// False = too many.
+  bool load(std::span<const Corner> corners) {
+    size_ = corners.size();
+    if (size_ > 16) return false;
+    auto* lanes = reinterpret_cast<std::uint32_t*>(b_.data());
+    for (std::size_t i = 0; i < size_; ++i) lanes[i] = corners[i].b;
+    for (std::size_t i = size_; i % 4 != 0; ++i) lanes[i] = kNone;
+    return true;
+  }
+  /// The corner whose b is `a`; kNone unless there is exactly one.
+  std::uint32_t before(std::uint32_t a) const {
+    constexpr int kOne = 1 << 16;  // counts matches above their place
+    const int wanted = static_cast<int>(a);
+    const Int4 four{wanted, wanted, wanted, wanted};
+    Int4 place{kOne, kOne + 1, kOne + 2, kOne + 3}, sum{};
+    for (std::size_t block = 0; 4 * block < size_; ++block) {
+      sum += (b_[block] == four) & place;
+      place += 4;
+    }
+    const int found = sum[0] + sum[1] + sum[2] + sum[3];
+    return found >> 16 == 1 ? static_cast<std::uint32_t>(found & 0xffff) : kNone;
+  }
+
+ private:
+  std::array<Int4, 4> b_;
+  std::size_t size_ = 0;
+};
 
 /// True if the edge is a feature: not exactly two triangles, or these differ in group or in a chart at one end.
 /// `triangles` are those with both a and b.
 bool is_feature_edge(const State& state, std::uint32_t a, std::uint32_t b, std::span<const std::uint32_t> triangles);
 
-/// Vertices of equal length ranges are swept apart: an edge whose two rings lie in one range meets no other range's
-/// work. The cut depends on the vertex count alone.
-std::size_t vertices_per_range(std::size_t vertices);
+/// The quadric of a vertex's star as it is. Feature vertices get the lines of their feature edges, too.
+Quadric quadric_of(const State& state, std::uint32_t v);
 
-/// Quadrics of all vertices and `inner` at the start of a pass. Feature vertices get the lines of their feature edges,
-/// too.
-void compute_quadrics(State& state, const Task& task);
-
-/// Quadric of an interior vertex from its star as it is now, amid a pass.
-Quadric current_quadric(const State& state, std::uint32_t v);
-
-/// An edge that may collapse, and how. 24 bytes.
+/// An edge that may collapse, and how. 28 bytes.
 struct Candidate {
   std::uint32_t kept, removed;
   Vec3f position;
-  float cost;  ///< see Placement
+  float cost;           ///< see Placement
+  std::uint32_t stamp;  ///< collapses that the sweep had done when it was evaluated
 };
 
-/// All candidates whose lower vertex lies in [begin, end), from quadrics up to date. Edges that can never collapse are
-/// left out.
-void collect_candidates(const State& state, std::uint32_t begin, std::uint32_t end, std::vector<Candidate>& out);
-
-/// Cost bin of a candidate: the exponent and three bits of the mantissa; bins rise with costs.
-std::size_t bin_of(float cost);
-inline constexpr std::size_t kBins = 2048;
-
-/// Tries collapses one after the other; one object a thread of work.
-class Sweeper {
+/// Evaluates edges in groups of four; what comes out keeps the order of what went in.
+class EdgeEvaluator {
  public:
-  Sweeper(State& state, std::uint32_t first_stamp) : state_(state), stamp_(first_stamp) {}
+  explicit EdgeEvaluator(const State& state) : state_(state) {}
 
-  /// Collapses if nothing forbids it and it costs at most `max_cost`; appends to steps() and merges().
-  bool try_collapse(Candidate candidate, float max_cost);
+  /// Edges from v to those neighbours u for which wanted(u). `corners` is v's star. Edges that can never collapse are
+  /// left out. Quadrics of both ends must be up to date.
+  template <class Wanted>
+  void add_edges(std::uint32_t v, std::span<const Corner> corners, Wanted wanted) {
+    spokes_.clear();
+    bool closed = state_.classes[v] == VertexClass::interior && fan_.load(corners);
+    for (std::size_t i = 0; i < corners.size() && closed; ++i) {
+      if (!wanted(corners[i].a)) continue;
+      const std::uint32_t other = fan_.before(corners[i].a);
+      closed = other != kNone;
+      if (closed) spokes_.push_back({corners[i].a, {corners[i].triangle, corners[other].triangle}, 2});
+    }
+    if (!closed) collect_spokes(corners);
+    for (const Spoke& spoke : spokes_) {
+      if (closed || wanted(spoke.neighbour)) add(v, spoke);
+    }
+  }
+  /// One edge with its triangles among the corners of `removed`.
+  void add_edge(std::uint32_t kept, std::uint32_t removed, std::span<const Corner> corners_of_removed);
 
-  std::vector<Step>& steps() { return steps_; }
-  std::vector<WedgeMerge>& merges() { return merges_; }
-  std::uint32_t stamp() const { return stamp_; }
+  /// What was evaluated since the last clear(), NaN and infinite costs included.
+  std::vector<Candidate>& finish();
+  void clear() { out_.clear(); }
+  std::size_t size() const { return out_.size(); }
 
  private:
-  struct Corner {
-    std::uint32_t a, b;  // the triangle is (self, a, b), remapped
-    std::uint32_t triangle;
+  // An edge from the vertex at hand with its triangles: the first two, and how many.
+  struct Spoke {
+    std::uint32_t neighbour;
+    std::uint32_t triangles[2];
+    std::uint32_t count;
   };
-  void gather(std::uint32_t v, std::vector<Corner>& corners) const;
-  bool refresh(Candidate& candidate) const;
+  void collect_spokes(std::span<const Corner> corners);
+  void add(std::uint32_t v, const Spoke& spoke);
+  void add_free(std::uint32_t v, std::uint32_t w, std::uint32_t first, std::uint32_t second);
+  void flush();
+
+  const State& state_;
+  std::vector<Spoke> spokes_;
+  Fan fan_;
+  std::vector<Candidate> out_;
+  std::size_t waiting_ = 0;
+  std::array<std::uint32_t, 4> v_{}, w_{}, first_{}, second_{};
+  std::array<std::size_t, 4> place_{};
+};
+
+/// Costs of NaN or infinity are none.
+inline bool is_possible(float cost, float max_cost) { return cost <= max_cost && cost < 3e38F; }
+
+/// Cost bin of a candidate: the exponent and three bits of the mantissa; bins rise with costs.
+inline std::uint32_t bin_of(float cost) { return std::bit_cast<std::uint32_t>(cost) >> 20; }
+inline constexpr std::size_t kBins = 2048;
+
+/// Takes the cheapest edge from its queue, collapses it and puts the edges that this changes back, until none is left
+/// that costs at most max_cost. One object a range of vertices.
+class Sweeper {
+ public:
+  /// Sweeps edges between vertices that have a bit of `zone`, so that others can sweep other ranges at the same time;
+  /// 0 = all edges. Collapses and marks are counted on from those of earlier sweeps.
+  Sweeper(State& state, std::uint8_t zone, float max_cost, std::uint32_t first_collapse, std::uint32_t first_mark);
+
+  /// Puts the edges from v to those neighbours u for which wanted(u) into the queue.
+  template <class Wanted>
+  void add_edges(std::uint32_t v, Wanted wanted) {
+    if ((state_.zone[v] & kHeavy) != 0) return;
+    evaluator_.add_edges(v, gather(state_, v, kept_memory_).corners, wanted);
+    if (evaluator_.size() >= 64) enqueue();
+  }
+  void run(const Task& task);
+
+  const std::vector<Step>& steps() const { return steps_; }
+  const std::vector<WedgeMerge>& merges() const { return merges_; }
+  std::uint32_t collapses() const { return collapse_; }  ///< with those before this sweep
+  std::uint32_t last_mark() const { return mark_; }
+
+ private:
+  bool may_touch(std::uint32_t v) const { return (state_.zone[v] & zone_) == zone_; }
+  void enqueue();
+  void push(const Candidate& candidate);
+  void try_collapse(Candidate candidate);
+  bool refresh(Candidate& candidate);
   bool link_allows(const Candidate& candidate);
-  bool flips(const std::vector<Corner>& corners, std::uint32_t self, std::uint32_t other, Vec3f to) const;
+  bool flips(std::span<const Corner> corners, std::uint32_t other, Vec3f to) const;
   bool pair_wedges(const Candidate& candidate, bool moved);
   std::uint32_t nearest_normal(std::uint32_t wedge, std::uint32_t chart) const;
   float plane_distance(const Candidate& candidate) const;
-  void commit(const Candidate& candidate, bool moved, std::size_t first_merge);
+  float tip_height(const Candidate& candidate) const;
+  void record(const Candidate& candidate, bool moved, float error);
+  std::size_t merge_wedges(const Candidate& candidate, bool moved);
+  void apply(const Candidate& candidate, bool moved);
+  void renew(std::uint32_t kept);
 
   State& state_;
-  std::uint32_t stamp_;
+  std::uint8_t zone_;
+  float max_cost_;
+  std::uint32_t collapse_, mark_;
+  EdgeEvaluator evaluator_;
+
+  // The queue: first in, first out within a bin, so that flats are thinned evenly.
+  std::vector<Candidate> queue_;
+  std::vector<std::uint32_t> queue_next_, bin_head_, bin_tail_;
+  std::size_t bin_ = 0;
+
+  // The collapse at hand.
   std::size_t shared_ = 0;  // triangles that vanish
-  std::vector<Corner> kept_corners_, removed_corners_;
+  Star kept_, removed_;
+  std::vector<Corner> kept_memory_, removed_memory_, corners_;  // corners_: of the new vertex
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // wedge of removed, wedge of kept
-  std::vector<std::uint32_t> kept_wedges_;
+  std::vector<std::uint32_t> kept_wedges_, ring_;
+
   std::vector<Step> steps_;
   std::vector<WedgeMerge> merges_;
 };
 
-/// One pass: costs of all edges, the cheapest `share` of them tried in order. Appends what was done to `steps` and
-/// `merges` and compacts the mesh. Returns the number of collapses.
+/// One pass: costs of all edges, about the cheapest `share` of them and what comes of these collapsed in order. Appends
+/// what was done to `steps` and `merges` and compacts the mesh. Returns the number of collapses.
 std::size_t run_pass(State& state, double share, std::vector<Step>& steps, std::vector<WedgeMerge>& merges,
                      const Task& task);
 

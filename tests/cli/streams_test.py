@@ -129,7 +129,10 @@ class Progress(Scratch):
 
     def on_terminal(self, *words):
         """Runs lod with a terminal as standard error; returns what came there."""
-        ours, theirs = pty.openpty()
+        try:
+            ours, theirs = pty.openpty()
+        except OSError as error:  # a chroot without /dev/pts
+            self.skipTest(f"no terminal to be had here: {error}")
         process = subprocess.Popen([lod_path(), *words], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=theirs)
         os.close(theirs)
         seen = b""

@@ -124,6 +124,22 @@ TEST(EdgeCollapse, many_ranges_give_the_same_bytes_and_stay_closed) {
   EXPECT_NEAR(volume_of(one->mesh) / volume_of(in), 1, 1e-4) << "the placement keeps the volume";
 }
 
+// The record tells collapses of different ranges by cost, not in the order in which they were done.
+TEST(EdgeCollapse, every_prefix_over_many_ranges_is_closed_and_manifold) {
+  const Mesh in = test::torus(160);
+  const EdgeCollapseResult out = collapse(in, 400);
+  ASSERT_TRUE(out.log);
+  for (std::size_t share = 1; share <= 20; ++share) {
+    const std::size_t count = out.log->collapses.size() * share / 20;
+    const Result<ReplayResult> at = replay(in, *out.log, count);
+    ASSERT_TRUE(at);
+    EXPECT_EQ(at->mesh.triangles.size(), out.log->triangles_after(count));
+    const Topology topology = topology_of(at->mesh);
+    EXPECT_TRUE(topology.closed && topology.manifold) << count << " collapses";
+    EXPECT_EQ(topology.duplicate_faces, 0U);
+  }
+}
+
 TEST(EdgeCollapse, soups_never_get_worse) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     const Mesh in = test::soup(seed, 8 + static_cast<int>(seed), 40 + 3 * static_cast<int>(seed));
