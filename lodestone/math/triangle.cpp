@@ -21,33 +21,46 @@ ClosestPoint closest_on_sides(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
   return best;
 }
 
+// A needle, whose barycentric coordinates would be lost in rounding: above its inside if p is on the inner side of all
+// three sides, each seen from its own corner.
+ClosestPoint closest_on_needle(Vec3d p, Vec3d a, Vec3d b, Vec3d c, Vec3d n) {
+  const double l = length_sq(n);
+  ClosestPoint best = closest_on_sides(p, a, b, c);
+  const auto within = [&](Vec3d from, Vec3d to) { return dot(cross(to - from, p - from), n) >= 0; };
+  if (!(l > 0) || !within(a, b) || !within(b, c) || !within(c, a)) return best;
+  const Vec3d q = p - n * (dot(p - a, n) / l);
+  const double d = length_sq(p - q);
+  // Where even the normal is lost, the foot may lie far off the triangle; then it is no nearer to a than to be
+  // believed.
+  if (d < best.distance_sq && length_sq(q - best.point) <= 1.0001 * best.distance_sq) best = {q, d};
+  return best;
+}
+
 }  // namespace
 
 ClosestPoint closest_point(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
+  constexpr double kNeedleSineSq = 1e-6;
   const auto found = [&](Vec3d q) { return ClosestPoint{q, length_sq(p - q)}; };
-  const Vec3d ab = b - a, ac = c - a, ap = p - a;
+  const Vec3d ab = b - a, ac = c - a, ap = p - a, n = cross(ab, ac);
+  if (!(length_sq(n) > kNeedleSineSq * length_sq(ab) * length_sq(ac))) return closest_on_needle(p, a, b, c, n);
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
   if (d1 <= 0 && d2 <= 0) return found(a);
   const Vec3d bp = p - b;
   const double d3 = dot(ab, bp), d4 = dot(ac, bp);
   if (d3 >= 0 && d4 <= d3) return found(b);
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0)
-    return d1 - d3 > 0 ? found(a + ab * (d1 / (d1 - d3))) : closest_on_sides(p, a, b, c);
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return found(a + ab * (d1 / (d1 - d3)));
   const Vec3d cp = p - c;
   const double d5 = dot(ab, cp), d6 = dot(ac, cp);
   if (d6 >= 0 && d5 <= d6) return found(c);
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0)
-    return d2 - d6 > 0 ? found(a + ac * (d2 / (d2 - d6))) : closest_on_sides(p, a, b, c);
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return found(a + ac * (d2 / (d2 - d6)));
   const double va = d3 * d6 - d5 * d4;
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
     const double sum = (d4 - d3) + (d5 - d6);
-    return sum > 0 ? found(b + (c - b) * ((d4 - d3) / sum)) : closest_on_sides(p, a, b, c);
+    return found(b + (c - b) * ((d4 - d3) / sum));
   }
-  // A needle's interior case is lost in rounding: let its sides decide when they are nearer.
   const double denominator = va + vb + vc;
-  if (!(denominator > 1e-12 * (length_sq(ab) * length_sq(ac)))) return closest_on_sides(p, a, b, c);
   return found(a + ab * (vb / denominator) + ac * (vc / denominator));
 }
 

@@ -46,6 +46,29 @@ TEST(Triangle, degenerate_ones_are_their_sides) {
   EXPECT_DOUBLE_EQ(closest_point(p, b, b, b).distance_sq, 0.75 * 0.75 + 25);
 }
 
+// Points on a triangle are at distance 0 from it, however slender it is.
+TEST(Triangle, needles_hold_their_own_points) {
+  std::uint64_t k = 0;
+  const auto next = [&] { return random_unit(7, k++); };
+  for (const double width : {1.0, 1e-2, 1e-4, 1e-6, 1e-8}) {
+    for (int i = 0; i < 300; ++i) {
+      const Vec3d a{next(), next(), next()}, along{next() + 1, next(), next()},
+          across = normalized(cross(along, Vec3d{next(), next(), next() + 1})) * width;
+      const Vec3d b = a + along, c = a + along * next() + across;
+      double s = next(), t = next();
+      if (s + t > 1) s = 1 - s, t = 1 - t;
+      const Vec3d on = a + (b - a) * s + (c - a) * t;
+      const Vec3d corners[3] = {a, b, c};
+      for (std::size_t turn = 0; turn < 3; ++turn) {
+        const Vec3d &x = corners[turn], &y = corners[(turn + 1) % 3], &z = corners[(turn + 2) % 3];
+        EXPECT_LT(std::sqrt(closest_point(on, x, y, z).distance_sq), 1e-8) << width;
+        const Vec3d up = on + normalized(cross(b - a, c - a)) * 0.125;
+        EXPECT_NEAR(std::sqrt(closest_point(up, x, y, z).distance_sq), 0.125, 1e-8) << width;
+      }
+    }
+  }
+}
+
 TEST(Box, distance_and_growth) {
   Box3d box;
   EXPECT_TRUE(box.empty());
