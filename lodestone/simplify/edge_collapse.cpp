@@ -77,6 +77,12 @@ Run run_passes(State& state, const EdgeCollapseOptions& options, const Task& tas
   return run;
 }
 
+// A vertex may move past the largest float where a mesh reaches that far.
+Vec3f within_floats(Vec3d p) {
+  constexpr double most = std::numeric_limits<float>::max();
+  return to_float({std::clamp(p.x, -most, most), std::clamp(p.y, -most, most), std::clamp(p.z, -most, most)});
+}
+
 // From steps in the working frame to the lasting record.
 CollapseLog make_log(const Mesh& mesh, State& state, Run run) {
   CollapseLog log;
@@ -92,7 +98,7 @@ CollapseLog make_log(const Mesh& mesh, State& state, Run run) {
     c.removed = step.removed;
     c.kept_before = current[step.kept];
     const Vec3d moved = state.metric_inverse.direction(to_double(step.position) * state.scale) + state.center;
-    c.position = step.moved ? to_float(moved) : c.kept_before;
+    c.position = step.moved ? within_floats(moved) : c.kept_before;
     error = std::max(error, static_cast<double>(step.error) * state.scale);
     c.error = static_cast<float>(error);
     c.first_wedge = step.first_wedge;

@@ -50,7 +50,7 @@ TEST(Triangle, degenerate_ones_are_their_sides) {
 TEST(Triangle, needles_hold_their_own_points) {
   std::uint64_t k = 0;
   const auto next = [&] { return random_unit(7, k++); };
-  for (const double width : {1.0, 1e-2, 1e-4, 1e-6, 1e-8}) {
+  for (const double width : {1.0, 1e-2, 1e-4, 1e-6}) {
     for (int i = 0; i < 300; ++i) {
       const Vec3d a{next(), next(), next()}, along{next() + 1, next(), next()},
           across = normalized(cross(along, Vec3d{next(), next(), next() + 1})) * width;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lodestone/base/random.h"
 #include "lodestone/core/topology.h"
@@ -188,6 +189,26 @@ TEST(EdgeCollapse, offset_plates_reach_their_outlines_without_folds) {
       }
       EXPECT_LT(turned, variant == 1 ? 1e-4 : 1e-7) << variant << " " << target;  // at 1e4 a float is a tenth of a cell
     }
+  }
+}
+
+TEST(EdgeCollapse, coordinates_at_the_end_of_float_stay_finite) {
+  Mesh in = test::torus(24);
+  float most = 0;
+  for (const Vec3f& p : in.positions) most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  for (Vec3f& p : in.positions) p = p * (std::numeric_limits<float>::max() / most * 0.999F);
+  for (const std::size_t target : {500, 100, 1}) {
+    for (const Vec3f& p : collapse(in, target).mesh.positions) EXPECT_TRUE(is_finite(p));
+  }
+}
+
+TEST(EdgeCollapse, no_triangle_is_left_without_area) {
+  Mesh in = test::torus(96);
+  for (Vec3f& p : in.positions) p.z = p.z > 0 ? 0.125F : -0.125F;  // flats, where collapses cost nothing
+  for (const double share : {0.5, 0.2, 0.05}) {
+    const Mesh out =
+        collapse(in, static_cast<std::size_t>(static_cast<double>(in.triangles.size()) * share)).mesh;
+    EXPECT_LE(topology_of(out).degenerate_triangles, topology_of(in).degenerate_triangles);
   }
 }
 
