@@ -1,5 +1,5 @@
 # Short names for the scripts under tools/, which also run where make is not installed yet.
-.PHONY: demo test check bench
+.PHONY: demo test check bench bench-peers
 demo:
 	@tools/demo "$(IN)"
 test:
@@ -8,3 +8,5 @@ check:
 	@tools/check fast
 bench:
 	@IN="$(IN)" tools/bench
+bench-peers:
+	@tools/bench_peers

@@ -206,8 +206,7 @@ TEST(EdgeCollapse, no_triangle_is_left_without_area) {
   Mesh in = test::torus(96);
   for (Vec3f& p : in.positions) p.z = p.z > 0 ? 0.125F : -0.125F;  // flats, where collapses cost nothing
   for (const double share : {0.5, 0.2, 0.05}) {
-    const Mesh out =
-        collapse(in, static_cast<std::size_t>(static_cast<double>(in.triangles.size()) * share)).mesh;
+    const Mesh out = collapse(in, static_cast<std::size_t>(static_cast<double>(in.triangles.size()) * share)).mesh;
     EXPECT_LE(topology_of(out).degenerate_triangles, topology_of(in).degenerate_triangles);
   }
 }
