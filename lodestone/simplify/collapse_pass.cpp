@@ -60,13 +60,13 @@ float mean_area(const State& state, const Task& task) {
 float cost_limit(const State& state, double share) {
   if (share >= 1) return std::numeric_limits<float>::max();
   constexpr std::size_t kSample = 1024;
-  const std::size_t n = state.positions.size(), stride = std::max<std::size_t>(1, n / kSample);
+  const std::size_t n = state.positions.size(), stride = std::max<std::size_t>(8, n / kSample);
   EdgeEvaluator evaluator(state);
   std::vector<Corner> corners;
   for (std::size_t i = 0; i < n; i += stride) {
     const auto v = static_cast<std::uint32_t>(i);
     if ((state.zone[v] & kHeavy) != 0) continue;
-    evaluator.add_edges(v, gather(state, v, corners).corners, [&](std::uint32_t u) { return stride > 1 || u > v; });
+    evaluator.add_edges(v, gather(state, v, corners).corners, [&](std::uint32_t u) { return u != v; });
   }
   std::vector<std::uint32_t> histogram(kBins, 0);
   std::size_t total = 0, below = 0;
@@ -109,11 +109,12 @@ void sweep_first(State& state, float max_cost, std::vector<Sweeper>& sweepers, c
 }
 
 // Quadrics that the sweeps before had to leave as they were.
-void renew_quadrics(State& state, std::uint8_t zone, const Task& task) {
+void renew_quadrics(State& state, const Task& task) {
   parallel_for(state.positions.size(), 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
-      const bool stale = (state.zone[v] & (zone | kHeavy)) == 0 && state.notes[v].touched_at > 0;
-      if (stale && state.notes[v].merged_at != kNone) state.quadrics[v] = quadric_of(state, v);
+      if (!state.notes[v].stale || (state.zone[v] & kHeavy) != 0 || state.notes[v].merged_at == kNone) continue;
+      state.quadrics[v] = quadric_of(state, v);
+      state.notes[v].stale = false;
     }
   });
 }
@@ -122,7 +123,7 @@ void renew_quadrics(State& state, std::uint8_t zone, const Task& task) {
 void sweep_second(State& state, float max_cost, std::vector<Sweeper>& sweepers, const Task& task) {
   const std::size_t n = state.positions.size(), before = sweepers.size();
   if (before < 2) return;
-  renew_quadrics(state, kInFirst, task);
+  renew_quadrics(state, task);
   parallel_for(n, 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<Corner> memory;
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
@@ -157,7 +158,7 @@ void sweep_second(State& state, float max_cost, std::vector<Sweeper>& sweepers, 
 // The edges that are left: they cross both cuts.
 void sweep_rest(State& state, float max_cost, std::vector<Sweeper>& sweepers, const Task& task) {
   if (sweepers.size() < 2) return;
-  renew_quadrics(state, kInSecond, task);
+  renew_quadrics(state, task);
   const Counters counters = counters_after(sweepers);
   Sweeper& sweeper = sweepers.emplace_back(state, 0, max_cost, counters.collapses, counters.marks);
   const auto n = static_cast<std::uint32_t>(state.positions.size());

@@ -64,7 +64,8 @@ struct Notes {
   std::uint32_t mark = 0;        ///< scratch of the link condition
   std::uint32_t touched_at = 0;  ///< collapse that last changed its star or a position in it
   std::uint32_t merged_at = 0;   ///< collapse that last merged a vertex into it; kNone once it has gone itself
-  std::uint32_t order = 0;       ///< largest Step::order around it
+  std::uint16_t order = 0;       ///< largest Step::order around it
+  bool stale = false;            ///< its quadric is not that of its star
 };
 
 /// Where in the division of work a vertex lies.
@@ -200,7 +201,7 @@ class EdgeEvaluator {
   explicit EdgeEvaluator(const State& state) : state_(state) {}
 
   /// Edges from v to those neighbours u for which wanted(u). `corners` is v's star. Edges that can never collapse are
-  /// left out. Quadrics of both ends must be up to date.
+  /// left out. Quadrics of all ends must be up to date.
   template <class Wanted>
   void add_edges(std::uint32_t v, std::span<const Corner> corners, Wanted wanted) {
     spokes_.clear();
@@ -289,7 +290,8 @@ class Sweeper {
   void record(const Candidate& candidate, bool moved, float error);
   std::size_t merge_wedges(const Candidate& candidate, bool moved);
   void apply(const Candidate& candidate, bool moved);
-  void renew(std::uint32_t kept);
+  void renew(std::uint32_t vertex);
+  void add_new_edges(std::uint32_t kept);
 
   State& state_;
   std::uint8_t zone_;
@@ -307,7 +309,7 @@ class Sweeper {
   Star kept_, removed_;
   std::vector<Corner> kept_memory_, removed_memory_, corners_;  // corners_: of the new vertex
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // wedge of removed, wedge of kept
-  std::vector<std::uint32_t> kept_wedges_, ring_;
+  std::vector<std::uint32_t> kept_wedges_;
 
   std::vector<Step> steps_;
   std::vector<WedgeMerge> merges_;

@@ -100,6 +100,8 @@ void Sweeper::run(const Task& task) {
 bool Sweeper::refresh(Candidate& candidate) {
   const Notes &kept = state_.notes[candidate.kept], &removed = state_.notes[candidate.removed];
   if (kept.touched_at <= candidate.stamp && removed.touched_at <= candidate.stamp) return true;
+  renew(candidate.kept);
+  renew(candidate.removed);
   evaluator_.add_edge(candidate.kept, candidate.removed, removed_.corners);
   const std::vector<Candidate>& now = evaluator_.finish();
   const bool possible = !now.empty() && is_possible(now[0].cost, max_cost_);
@@ -288,26 +290,24 @@ void Sweeper::record(const Candidate& candidate, bool moved, float error) {
   step.order = bin_of(candidate.cost);
   for (const std::span<const Corner> corners : {kept_.corners, removed_.corners}) {
     for (const Corner& c : corners) {
-      step.order = std::max({step.order, state_.notes[c.a].order, state_.notes[c.b].order});
+      step.order = std::max<std::uint32_t>({step.order, state_.notes[c.a].order, state_.notes[c.b].order});
     }
   }
   steps_.push_back(step);
 }
 
-// Changes the mesh. The new vertex's triangles go to corners_, the ring around it to ring_, each vertex once.
+// Changes the mesh. The new vertex's triangles go to corners_.
 void Sweeper::apply(const Candidate& candidate, bool moved) {
   const std::uint32_t k = candidate.kept, r = candidate.removed;
   ++collapse_;
   ++mark_;
   corners_.clear();
-  ring_.clear();
   if (moved) state_.positions[k] = candidate.position;
-  const std::uint32_t order = steps_.back().order;
+  const auto order = static_cast<std::uint16_t>(steps_.back().order);
   const auto visit = [&](std::uint32_t u) {
     Notes& notes = state_.notes[u];
     if (notes.mark == mark_) return;
-    notes = {mark_, collapse_, notes.merged_at, order};
-    ring_.push_back(u);
+    notes = {mark_, collapse_, notes.merged_at, order, true};
   };
   const auto add = [&](const Corner& c) {
     corners_.push_back(c);
@@ -341,17 +341,24 @@ void Sweeper::apply(const Candidate& candidate, bool moved) {
   state_.next[state_.last[k]] = r;
   state_.last[k] = state_.last[r];
   state_.notes[r].merged_at = kNone;
-  state_.notes[k] = {mark_, collapse_, collapse_, order};
+  state_.notes[k] = {mark_, collapse_, collapse_, order, true};
   state_.zone[k] &= static_cast<std::uint8_t>(state_.zone[r] | kHeavy);
 }
 
-// Quadrics around the new vertex, and its edges into the queue.
-void Sweeper::renew(std::uint32_t kept) {
-  for (const std::uint32_t u : ring_) {
-    if (may_touch(u) && (state_.zone[u] & kHeavy) == 0) state_.quadrics[u] = quadric_of(state_, u);
-  }
-  state_.quadrics[kept] = quadric_of(state_, kept);
+void Sweeper::renew(std::uint32_t vertex) {
+  if (!state_.notes[vertex].stale || (state_.zone[vertex] & kHeavy) != 0) return;
+  state_.quadrics[vertex] = quadric_of(state_, vertex);
+  state_.notes[vertex].stale = false;
+}
+
+// The new vertex's edges into the queue.
+void Sweeper::add_new_edges(std::uint32_t kept) {
   if (corners_.size() > kMaxValence || kept_.seen + removed_.seen > 64 + kMostVanished * corners_.size()) return;
+  renew(kept);
+  for (const Corner& c : corners_) {
+    if (may_touch(c.a)) renew(c.a);
+    if (may_touch(c.b)) renew(c.b);
+  }
   evaluator_.add_edges(kept, corners_, [&](std::uint32_t u) { return may_touch(u); });
   enqueue();
 }
@@ -373,7 +380,7 @@ void Sweeper::try_collapse(Candidate candidate) {
   if (!is_possible(kTipWeight * state_.mean_area * tip * tip, max_cost_)) return;
   record(candidate, moved, std::max(tip, plane_distance(candidate)));
   apply(candidate, moved);
-  renew(k);
+  add_new_edges(k);
 }
 
 }  // namespace lodestone::simplify::detail
