@@ -7,10 +7,10 @@
 #include "app/build_plan.h"
 #include "app/input.h"
 #include "app/json.h"
-#include "app/stopwatch.h"
 #include "app/table.h"
 #include "app/text.h"
 #include "app/verbs.h"
+#include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 
 namespace lodestone::app {
@@ -33,12 +33,14 @@ void add_levels(BuildReport& report, const Ladder& ladder, const io::WriteReport
   report.total_bytes = written.total_bytes;
 }
 
-Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, const Console& console, const Task& task) {
+Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Console& console, const Task& task) {
   Stopwatch watch;
   BuildReport report;
   report.input = job.input.string();
   Result<Model> model = read_input(job.input, console, task.part(0.1, "reading"));
   if (!model) return fail(model.error());
+  const Result<void> kept = io::check_replaced(*model, job.output, planned_levels(plan));
+  if (!kept) return fail(kept.error());
   apply_unit(*model, plan.lengths);
   report.read_seconds = watch.lap();
   report.triangles = drawn_triangles(*model);
@@ -62,6 +64,7 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, const 
   const Result<io::WriteReport> written =
       io::write_ladder(result->ladder, job.output, write, task.part(0.1, "writing"));
   if (!written) return fail(written.error());
+  for (const fs::path& file : written->files) console.wrote(file.string());
   report.write_seconds = watch.lap();
   add_levels(report, result->ladder, *written, plan.view);
   for (const std::string& warning : written->warnings) {
@@ -74,7 +77,7 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, const 
 }
 
 // One file too large must not end a batch.
-Result<BuildReport> build_within_memory(const BuildJob& job, const BuildPlan& plan, const Console& console,
+Result<BuildReport> build_within_memory(const BuildJob& job, const BuildPlan& plan, Console& console,
                                         const Task& task) {
   try {
     return build_one(job, plan, console, task);
@@ -143,7 +146,7 @@ class ResultFolder {
   fs::path path_;
 };
 
-Result<ExitCode> run_single(const BuildJob& job, const BuildPlan& plan, bool json, const Console& console) {
+Result<ExitCode> run_single(const BuildJob& job, const BuildPlan& plan, bool json, Console& console) {
   const Result<BuildReport> report = build_one(job, plan, console, console.task().part(1.0));
   if (!report) return fail(report.error());
   console.result(json ? to_json(*report) : table_of(*report, plan));

@@ -14,37 +14,28 @@ namespace lodestone::app {
 namespace fs = std::filesystem;
 namespace {
 
-Result<void> check_one_target(const Arguments& arguments) {
-  std::vector<std::string> given;
-  for (const char* option : {"--levels", "--ratio", "--triangles", "--error", "--distances"}) {
-    if (arguments.has(option)) given.emplace_back(option);
-  }
-  if (given.size() > 1) {
-    return fail(ErrorCode::bad_argument, fmt::format("{} can't be given together", fmt::join(given, " and ")), {},
-                "choose one; --ratio, --triangles, --error and --distances take a list, one level for each value");
-  }
-  if (arguments.has("--pixels") && !arguments.has("--distances")) {
+Result<void> read_target(const Arguments& arguments, BuildPlan& plan) {
+  const Result<std::string> target =
+      given_target(arguments, {"--levels", "--ratio", "--triangles", "--error", "--distances"},
+                   "choose one; --ratio, --triangles, --error and --distances take a list, one level for each value");
+  if (!target) return fail(target.error());
+  if (arguments.has("--pixels") && *target != "--distances") {
     return fail(ErrorCode::bad_argument, "--pixels needs --distances", {}, "such as --pixels 1 --distances 5,10,20");
   }
-  return {};
-}
-
-Result<void> read_target(const Arguments& arguments, BuildPlan& plan) {
-  if (const Result<void> one = check_one_target(arguments); !one) return one;
   // Takes a parsed value over, or hands its error on.
   const auto take = [](auto parsed, auto& into) -> Result<void> {
     if (!parsed) return fail(parsed.error());
     into = std::move(*parsed);
     return {};
   };
-  if (arguments.has("--ratio")) return take(ratio_list(arguments, "--ratio"), plan.ratios);
-  if (arguments.has("--triangles")) return take(arguments.count_list("--triangles"), plan.triangles);
-  if (arguments.has("--error")) return take(length_list(arguments, "--error", plan.lengths), plan.errors);
-  if (arguments.has("--distances")) {
+  if (*target == "--ratio") return take(ratio_list(arguments, "--ratio"), plan.ratios);
+  if (*target == "--triangles") return take(arguments.count_list("--triangles"), plan.triangles);
+  if (*target == "--error") return take(length_list(arguments, "--error", plan.lengths), plan.errors);
+  if (*target == "--distances") {
     if (const Result<void> pixels = take(arguments.positive("--pixels"), plan.pixels); !pixels) return pixels;
     return take(length_list(arguments, "--distances", plan.lengths, BareLength::model_units), plan.distances);
   }
-  return take(arguments.count("--levels", 2), plan.levels);
+  return take(arguments.count("--levels", 2, kMostLevels), plan.levels);
 }
 
 }  // namespace
@@ -64,6 +55,11 @@ Result<BuildPlan> build_plan(const Arguments& arguments) {
   plan.keep_border = arguments.has("--keep-border");
   plan.compression = compression_of(arguments);
   return plan;
+}
+
+std::size_t planned_levels(const BuildPlan& plan) {
+  if (plan.levels > 0) return plan.levels;
+  return 1 + std::max({plan.ratios.size(), plan.triangles.size(), plan.errors.size(), plan.distances.size()});
 }
 
 Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& model,
@@ -149,11 +145,12 @@ Result<void> check_distinct(const std::vector<BuildJob>& jobs) {
 }
 
 // Before a folder exists only the names can be checked.
-Result<void> check_outputs(const BuildJobs& all, const std::vector<fs::path>& inputs) {
+Result<void> check_outputs(const BuildJobs& all, const std::vector<fs::path>& inputs, io::Compression compression) {
   if (const Result<void> distinct = check_distinct(all.jobs); !distinct) return distinct;
   const bool folder_exists = all.folder.empty() || is_folder(all.folder);
   for (const BuildJob& job : all.jobs) {
-    const Result<void> checked = check_output(job.output, inputs);
+    Result<void> checked = check_output(job.output, inputs, compression);
+    if (checked) checked = io::check_ladder_name(job.output, compression);
     if (!checked && (folder_exists || checked.error().code == ErrorCode::bad_argument)) return checked;
   }
   return {};
@@ -186,7 +183,8 @@ Result<BuildJobs> build_jobs(const Arguments& arguments) {
   for (std::size_t i = 0; i < inputs->size(); ++i) {
     all.jobs.push_back(BuildJob{(*inputs)[i], replaced(pattern, "{name}", names[i])});
   }
-  if (const Result<void> checked = check_outputs(all, *inputs); !checked) return fail(checked.error());
+  const Result<void> checked = check_outputs(all, *inputs, compression_of(arguments));
+  if (!checked) return fail(checked.error());
   return all;
 }
 

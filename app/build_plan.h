@@ -27,6 +27,9 @@ struct BuildPlan {
 /// Errors: bad_argument (two targets, a value out of range).
 Result<BuildPlan> build_plan(const Arguments& arguments);
 
+/// Levels that a ladder has when it does not end early, with level 0.
+std::size_t planned_levels(const BuildPlan& plan);
+
 /// The options for one model. `notes` gets what a user should know, such as "keeping 10 %".
 Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& model, std::vector<std::string>& notes);
 

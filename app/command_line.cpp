@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "lodestone/base/units.h"
+
 namespace lodestone::app {
 namespace {
 
@@ -18,9 +20,13 @@ tl::unexpected<Error> bad_value(std::string_view option, std::string_view text, 
   return fail(ErrorCode::bad_argument, fmt::format("{} is '{}', but {}", option, text, wanted));
 }
 
-Result<std::uint64_t> parse_count(std::string_view option, std::string_view text, std::uint64_t least) {
+Result<std::uint64_t> parse_count(std::string_view option, std::string_view text, std::uint64_t least,
+                                  std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range || (error == std::errc{} && value > most)) {
+    return fail(ErrorCode::bad_argument, fmt::format("{} is {}, the limit is {}", option, text, with_separators(most)));
+  }
   if (error != std::errc{} || end != text.data() + text.size() || value < least) {
     return bad_value(option, text, fmt::format("it must be a whole number of at least {}", least));
   }
@@ -94,8 +100,8 @@ std::string Arguments::text(std::string_view option) const {
   return spec ? spec->default_value : std::string();
 }
 
-Result<std::uint64_t> Arguments::count(std::string_view option, std::uint64_t least) const {
-  return parse_count(option, text(option), least);
+Result<std::uint64_t> Arguments::count(std::string_view option, std::uint64_t least, std::uint64_t most) const {
+  return parse_count(option, text(option), least, most);
 }
 
 Result<double> Arguments::positive(std::string_view option) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -21,8 +22,9 @@ class Arguments {
   bool has(std::string_view option) const { return given.find(option) != given.end(); }
   /// What was typed, else the option's default.
   std::string text(std::string_view option) const;
-  /// A whole number of at least `least`. Errors: bad_argument.
-  Result<std::uint64_t> count(std::string_view option, std::uint64_t least = 0) const;
+  /// A whole number from `least` to `most`. Errors: bad_argument.
+  Result<std::uint64_t> count(std::string_view option, std::uint64_t least = 0,
+                              std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) const;
   /// A finite number above 0. Errors: bad_argument.
   Result<double> positive(std::string_view option) const;
   /// Whole numbers of at least 1, separated by commas. Errors: bad_argument.

@@ -36,10 +36,18 @@ void Console::result(std::string_view text) const {
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
+void Console::wrote(const std::string& file) {
+  if (written_.empty() || written_.back() != file) written_.push_back(file);
+}
+
 Result<void> Console::finish() const {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return {};
-  return fail(ErrorCode::cannot_write, "the result could not be written", "standard output",
-              "is it closed, or its disk full?");
+  std::string what = "the result could not be written";
+  if (written_.size() == 1) what = fmt::format("{} was written; its report could not be", written_.front());
+  if (written_.size() > 1) {
+    what = fmt::format("{} and {} more were written; their report could not be", written_.front(), written_.size() - 1);
+  }
+  return fail(ErrorCode::cannot_write, what, "standard output", "is standard output closed, or its disk full?");
 }
 
 }  // namespace lodestone::app

@@ -27,7 +27,9 @@ class Console {
   void shortfall(std::string_view text) const;  ///< always: why a target was not reached
   /// To standard output. Errors are found by finish().
   void result(std::string_view text) const;
-  /// Flushes standard output. Errors: cannot_write.
+  /// Remembers a result file that stands under its name, for finish().
+  void wrote(const std::string& file);
+  /// Flushes standard output. Errors: cannot_write; it says which files were written all the same.
   Result<void> finish() const;
 
  private:
@@ -35,6 +37,7 @@ class Console {
   Talk talk_;
   mutable Progress progress_;
   Task task_;
+  std::vector<std::string> written_;
 };
 
 }  // namespace lodestone::app

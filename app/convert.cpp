@@ -3,9 +3,9 @@
 #include "app/input.h"
 #include "app/json.h"
 #include "app/shared_options.h"
-#include "app/stopwatch.h"
 #include "app/text.h"
 #include "app/verbs.h"
+#include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 
 namespace lodestone::app {
@@ -28,7 +28,10 @@ Result<ExitCode> run_convert(const Arguments& arguments, Console& console) {
   report.input = arguments.inputs[0];
   const Result<std::string> output = output_of(arguments);
   if (!output) return fail(output.error());
-  if (const Result<void> checked = check_output(*output, {report.input}); !checked) return fail(checked.error());
+  const io::Compression compression = compression_of(arguments);
+  if (const Result<void> checked = check_output(*output, {report.input}, compression); !checked) {
+    return fail(checked.error());
+  }
 
   Stopwatch watch;
   const Result<Model> model = read_input(report.input, console, console.task().part(0.5, "reading"));
@@ -36,9 +39,10 @@ Result<ExitCode> run_convert(const Arguments& arguments, Console& console) {
   report.read_seconds = watch.lap();
   report.triangles = drawn_triangles(*model);
   report.warnings = model->warnings;
-  const Result<io::WriteReport> written = io::write_model(
-      *model, *output, io::WriteOptions{compression_of(arguments), {}}, console.task().part(0.5, "writing"));
+  const Result<io::WriteReport> written =
+      io::write_model(*model, *output, io::WriteOptions{compression, {}}, console.task().part(0.5, "writing"));
   if (!written) return fail(written.error());
+  console.wrote(*output);
   report.write_seconds = watch.lap();
   report.bytes = written->total_bytes;
   for (const auto& file : written->files) report.files.push_back(file.string());

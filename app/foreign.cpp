@@ -18,6 +18,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "lodestone/base/file.h"
 #include "lodestone/io/read.h"
 #include "lodestone/io/write.h"
 
@@ -53,9 +54,8 @@ Limits limits_for(std::uint64_t file_bytes) {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::error_code error;
-    std::string pattern = (fs::temp_directory_path(error) / "lod-XXXXXX").string();
-    if (!error && ::mkdtemp(pattern.data()) != nullptr) path_ = pattern;
+    std::string pattern = temporary_folder_pattern() + "XXXXXX";
+    if (::mkdtemp(pattern.data()) != nullptr) path_ = pattern;
   }
   ~TemporaryFolder() {
     std::error_code ignored;
@@ -203,20 +203,21 @@ Result<Outcome> run_reader(const fs::path& path, const fs::path& glb, const Limi
 
 }  // namespace
 
-Result<Model> read_foreign(const fs::path& path, Task task) {
+std::string temporary_folder_pattern() {
   std::error_code error;
-  const std::uint64_t bytes = fs::file_size(path, error);
-  if (error) {
-    const bool missing = error == std::errc::no_such_file_or_directory;
-    return fail(ErrorCode::cannot_read, missing ? "no such file" : error.message(), path.string(),
-                missing ? "is the name spelt right?" : "");
-  }
+  const fs::path folder = fs::temp_directory_path(error);
+  return ((error ? fs::path("/tmp") : folder) / fmt::format("lod-{}-", ::getpid())).string();
+}
+
+Result<Model> read_foreign(const fs::path& path, Task task) {
+  const Result<InputFile> file = InputFile::open(path);
+  if (!file) return fail(file.error());
   const TemporaryFolder folder;
   if (folder.path().empty()) {
     return fail(ErrorCode::cannot_write, "no temporary folder could be made", path.string(), "set TMPDIR to one");
   }
   const fs::path glb = folder.path() / "model.glb";
-  const Limits limits = limits_for(bytes);
+  const Limits limits = limits_for(file->size());
   const Result<Outcome> outcome = run_reader(path, glb, limits, task);
   if (!outcome) return fail(outcome.error());
   if (outcome->end == Outcome::End::cancelled) return cancelled_error("reading");
@@ -226,6 +227,7 @@ Result<Model> read_foreign(const fs::path& path, Task task) {
 
   Result<Model> model = io::read_model(glb, task);
   if (!model) return model;
+  model->files = {path};
   model->meters_per_unit = report.meters_per_unit;
   model->file_vertices = report.vertices;
   model->file_triangles = report.triangles;

@@ -54,7 +54,7 @@ bool would_overwrite(const fs::path& output, const fs::path& input) {
 
 }  // namespace
 
-Result<void> check_output(const fs::path& output, const std::vector<fs::path>& inputs) {
+Result<void> check_output(const fs::path& output, const std::vector<fs::path>& inputs, io::Compression compression) {
   const std::string extension = output.extension().string();
   if (!io::is_writable_extension(extension)) {
     return fail(ErrorCode::bad_argument,
@@ -62,6 +62,7 @@ Result<void> check_output(const fs::path& output, const std::vector<fs::path>& i
                                   : fmt::format("'{}' is no format that we write", extension),
                 output.string(), "end it in .glb, .gltf, .ply, .obj, .stl or .off");
   }
+  if (const Result<void> name = io::check_model_name(output, compression); !name) return name;
   for (const fs::path& input : inputs) {
     if (would_overwrite(output, input)) {
       return fail(ErrorCode::bad_argument, "is an input, and inputs are never overwritten", output.string(),

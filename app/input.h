@@ -9,6 +9,7 @@
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
 #include "lodestone/core/model.h"
+#include "lodestone/io/write.h"
 
 namespace lodestone::app {
 
@@ -16,10 +17,12 @@ namespace lodestone::app {
 /// Errors: those of io::read_model; bad_argument for a directory, as the verb takes a single file.
 Result<Model> read_input(const std::filesystem::path& path, const Console& console, Task task);
 
-/// Checks before the work begins that `output` can be written: a format we write, an existing folder with permission,
-/// not a directory, and none of `inputs`. "{level}" in the name stands for any number.
-/// Errors: bad_argument, cannot_write.
-Result<void> check_output(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs);
+/// Checks before the work begins that `output` can be written: a format we write, one that holds the compression, an
+/// existing folder with permission, not a directory, and none of `inputs`. "{level}" in the name stands for any number.
+/// What else must not be replaced shows when the input is read: io::check_replaced(). Errors: bad_argument,
+/// cannot_write.
+Result<void> check_output(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs,
+                          io::Compression compression);
 
 /// What the error says when -o is missing.
 tl::unexpected<Error> missing_output(const std::string& verb, const std::string& input);

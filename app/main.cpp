@@ -49,13 +49,9 @@ Error unknown_verb(const std::string& word) {
 }
 
 int run_verb(const VerbSpec& verb, const Arguments& arguments) {
-  const Result<std::uint64_t> threads = arguments.count("--threads");
-  if (!threads) return tell(threads.error());
   constexpr std::uint64_t kMostThreads = 1024;
-  if (*threads > kMostThreads) {
-    return tell(Error{
-        ErrorCode::bad_argument, fmt::format("--threads is {}, the limit is {}", *threads, kMostThreads), {}, {}});
-  }
+  const Result<std::uint64_t> threads = arguments.count("--threads", 0, kMostThreads);
+  if (!threads) return tell(threads.error());
   const int thread_count = static_cast<int>(*threads);
   const ThreadLimit limit(thread_count);
   const Console::Talk talk = arguments.has("--quiet")     ? Console::Talk::quiet

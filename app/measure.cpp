@@ -5,10 +5,10 @@
 #include "app/input.h"
 #include "app/json.h"
 #include "app/shared_options.h"
-#include "app/stopwatch.h"
 #include "app/table.h"
 #include "app/text.h"
 #include "app/verbs.h"
+#include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 
 namespace lodestone::app {

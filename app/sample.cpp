@@ -3,9 +3,9 @@
 #include "app/input.h"
 #include "app/json.h"
 #include "app/samples.h"
-#include "app/stopwatch.h"
 #include "app/text.h"
 #include "app/verbs.h"
+#include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 #include "lodestone/io/write.h"
 
@@ -21,11 +21,8 @@ Result<Model> make_sphere_of(const Arguments& arguments, std::size_t triangles, 
     }
     return make_sphere(triangles, task);
   }
-  const Result<std::uint64_t> level = arguments.count("--level");
+  const Result<std::uint64_t> level = arguments.count("--level", 0, kMostSphereLevel);
   if (!level) return fail(level.error());
-  if (*level > static_cast<std::uint64_t>(kMostSphereLevel)) {
-    return fail(ErrorCode::bad_argument, fmt::format("--level is {}, the limit is {}", *level, kMostSphereLevel));
-  }
   return make_icosphere(static_cast<int>(*level), task);
 }
 
@@ -35,12 +32,8 @@ Result<Model> make_sample(const Arguments& arguments, const Task& task) {
   if (!seed) return fail(seed.error());
   std::size_t triangles = name == "tower" ? kDefaultTowerTriangles : kDefaultTriangles;
   if (arguments.has("--triangles")) {
-    const Result<std::uint64_t> wanted = arguments.count("--triangles", 1);
+    const Result<std::uint64_t> wanted = arguments.count("--triangles", 1, kMostSampleTriangles);
     if (!wanted) return fail(wanted.error());
-    if (*wanted > kMostSampleTriangles) {
-      return fail(ErrorCode::bad_argument,
-                  fmt::format("--triangles is {}, the limit is {}", *wanted, with_separators(kMostSampleTriangles)));
-    }
     triangles = *wanted;
   }
   if (name == "sphere") return make_sphere_of(arguments, triangles, task);
@@ -62,13 +55,15 @@ Result<ExitCode> run_sample(const Arguments& arguments, Console& console) {
                 fmt::format("add one, such as -o {}.glb", report.sample));
   }
   report.file = arguments.text("--output");
-  if (const Result<void> checked = check_output(report.file, {}); !checked) return fail(checked.error());
+  const Result<void> checked = check_output(report.file, {}, io::Compression::none);
+  if (!checked) return fail(checked.error());
   Stopwatch watch;
   const Result<Model> model = make_sample(arguments, console.task().part(0.5, "making"));
   if (!model) return fail(model.error());
   if (console.task().cancelled()) return cancelled_error("making the sample");
   const Result<io::WriteReport> written = io::write_model(*model, report.file, {}, console.task().part(0.5, "writing"));
   if (!written) return fail(written.error());
+  console.wrote(report.file);
   for (const std::string& warning : written->warnings) console.note(fmt::format("{}: {}", report.file, warning));
   report.triangles = drawn_triangles(*model);
   report.instances = model->instances.size();

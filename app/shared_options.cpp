@@ -38,27 +38,29 @@ OptionSpec json_option() {
 
 OptionGroup ladder_target_group() {
   const std::string levels = fmt::format("{}", chain::LadderOptions{}.levels);
-  return {"Levels (one of these)",
-          {{"--levels",
-            "",
-            "N",
-            levels,
-            "levels",
-            "N levels with the original as level 0, each with half the triangles of the one before",
-            {},
-            Completion::none},
-           ratio_option("R,...", "one level for each share"),
-           {"--triangles", "", "N,...", "", "triangles", "one level for each count", {}, Completion::none},
-           error_option("E,...", "one level for each error: the coarsest mesh whose measured error is within it"),
-           {"--distances",
-            "",
-            "D,...",
-            "",
-            "length: model units, or 5m",
-            "one level for each distance: the coarsest that is good for --pixels from there",
-            {},
-            Completion::none},
-           {"--pixels", "", "P", "1", "pixels", "what --distances allow", {}, Completion::none}}};
+  return {
+      "Levels (one of these)",
+      {{"--levels",
+        "",
+        "N",
+        levels,
+        "levels",
+        fmt::format("N levels (2 to {}) with the original as level 0, each with half the triangles of the one before",
+                    kMostLevels),
+        {},
+        Completion::none},
+       ratio_option("R,...", "one level for each share"),
+       {"--triangles", "", "N,...", "", "triangles", "one level for each count", {}, Completion::none},
+       error_option("E,...", "one level for each error: the coarsest mesh whose measured error is within it"),
+       {"--distances",
+        "",
+        "D,...",
+        "",
+        "length: model units, or 5m",
+        "one level for each distance: the coarsest that is good for --pixels from there",
+        {},
+        Completion::none},
+       {"--pixels", "", "P", "1", "pixels", "what --distances allow", {}, Completion::none}}};
 }
 
 OptionGroup view_group() {
@@ -158,6 +160,18 @@ OptionGroup general_group() {
            {"--quiet", "-q", "", "", "", "only errors on standard error: no progress, no notes", {}, Completion::none},
            {"--verbose", "-v", "", "", "", "tell decisions and details", {}, Completion::none},
            {"--help", "-h", "", "", "", "this text", {}, Completion::none}}};
+}
+
+Result<std::string> given_target(const Arguments& arguments, const std::vector<std::string>& targets,
+                                 const std::string& remedy) {
+  std::vector<std::string> given;
+  for (const std::string& target : targets) {
+    if (arguments.has(target)) given.push_back(target);
+  }
+  if (given.empty()) return std::string();
+  if (given.size() == 1) return given.front();
+  return fail(ErrorCode::bad_argument, fmt::format("{} can't be given together", fmt::join(given, " and ")), {},
+              remedy);
 }
 
 std::string unit_name(double meters_per_unit) {

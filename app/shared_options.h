@@ -25,6 +25,13 @@ OptionGroup output_group(bool compress);             ///< -o, --compress, --json
 OptionGroup result_group();                          ///< --json alone
 OptionGroup general_group();                         ///< --threads, --quiet, --verbose, --help
 
+/// More levels than these are no ladder but a slip of the keyboard.
+inline constexpr std::uint64_t kMostLevels = 32;
+
+/// Which of `targets` is given; empty = none. Errors: bad_argument with `remedy` (more than one).
+Result<std::string> given_target(const Arguments& arguments, const std::vector<std::string>& targets,
+                                 const std::string& remedy);
+
 /// A length as typed, to be turned into model units once the model is known.
 struct LengthArgument {
   std::string text;

@@ -5,10 +5,10 @@
 #include "app/input.h"
 #include "app/json.h"
 #include "app/shared_options.h"
-#include "app/stopwatch.h"
 #include "app/table.h"
 #include "app/text.h"
 #include "app/verbs.h"
+#include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 
 namespace lodestone::app {
@@ -24,24 +24,18 @@ struct SimplifyPlan {
   measure::DistanceOptions distance;
 };
 
-Result<void> check_one_target(const Arguments& arguments) {
-  int targets = 0;
-  for (const char* option : {"--ratio", "--triangles", "--error"}) {
-    if (!arguments.has(option)) continue;
-    ++targets;
-    if (arguments.text(option).find(',') != std::string::npos) {
-      return fail(ErrorCode::bad_argument, fmt::format("{} takes one value here", option), {},
-                  "'lod build' makes several levels");
-    }
-  }
-  if (targets == 1) return {};
-  return fail(ErrorCode::bad_argument,
-              targets == 0 ? "simplify needs a target" : "simplify takes one target, not several", {},
-              "give one of --triangles N, --ratio 10%, --error 0.1%");
+Result<void> check_target(const Arguments& arguments) {
+  const std::string remedy = "give one target: --triangles N, --ratio 10% or --error 0.1%";
+  const Result<std::string> target = given_target(arguments, {"--ratio", "--triangles", "--error"}, remedy);
+  if (!target) return fail(target.error());
+  if (target->empty()) return fail(ErrorCode::bad_argument, "simplify needs a target", {}, remedy);
+  if (arguments.text(*target).find(',') == std::string::npos) return {};
+  return fail(ErrorCode::bad_argument, fmt::format("{} takes one value here", *target), {},
+              "'lod build' makes several levels");
 }
 
 Result<SimplifyPlan> plan_of(const Arguments& arguments) {
-  if (const Result<void> one = check_one_target(arguments); !one) return fail(one.error());
+  if (const Result<void> one = check_target(arguments); !one) return fail(one.error());
   SimplifyPlan plan;
   const Result<LengthRules> lengths = length_rules(arguments);
   if (!lengths) return fail(lengths.error());
@@ -122,11 +116,15 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
   SimplifyReport report;
   report.input = input;
   report.output = arguments.text("--output");
-  if (const Result<void> checked = check_output(report.output, {input}); !checked) return fail(checked.error());
+  const io::Compression compression = compression_of(arguments);
+  if (const Result<void> checked = check_output(report.output, {input}, compression); !checked) {
+    return fail(checked.error());
+  }
 
   Stopwatch watch;
   Result<Model> model = read_input(input, console, console.task().part(0.15, "reading"));
   if (!model) return fail(model.error());
+  if (const Result<void> kept = io::check_replaced(*model, report.output); !kept) return fail(kept.error());
   apply_unit(*model, plan->lengths);
   report.read_seconds = watch.lap();
   report.triangles_in = drawn_triangles(*model);
@@ -139,10 +137,10 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
       chain::simplify_model(*model, *options, console.task().part(0.75, "simplifying"));
   if (!result) return fail(result.error());
   watch.lap();
-  const Result<io::WriteReport> written =
-      io::write_model(result->level.model, report.output, io::WriteOptions{compression_of(arguments), {}},
-                      console.task().part(0.1, "writing"));
+  const Result<io::WriteReport> written = io::write_model(
+      result->level.model, report.output, io::WriteOptions{compression, {}}, console.task().part(0.1, "writing"));
   if (!written) return fail(written.error());
+  console.wrote(report.output);
   report.write_seconds = watch.lap();
 
   report.triangles = result->level.triangles;

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -30,12 +31,20 @@ int write_all(int descriptor, const char* data, std::size_t size) {
   return 0;
 }
 
+tl::unexpected<Error> not_regular(const std::filesystem::path& path) {
+  return fail(ErrorCode::cannot_read, "is not a regular file", path.string(), "copy it to a file first");
+}
+
 }  // namespace
 
 Result<InputFile> InputFile::open(const std::filesystem::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  // O_NONBLOCK: a pipe without a writer would block here. With a regular file it only means not to wait until another
+  // program gives up a lease on it.
+  int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0 && errno == EWOULDBLOCK) descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) {
     const int error_number = errno;
+    if (error_number == ENXIO) return not_regular(path);  // a socket
     return fail(ErrorCode::cannot_read, error_number == ENOENT ? "no such file" : reason(error_number), path.string(),
                 error_number == ENOENT ? "is the name spelt right?" : "");
   }
@@ -47,6 +56,7 @@ Result<InputFile> InputFile::open(const std::filesystem::path& path) {
   if (S_ISDIR(status.st_mode)) {
     return fail(ErrorCode::cannot_read, "is a directory", path.string(), "name a file in it");
   }
+  if (!S_ISREG(status.st_mode)) return not_regular(path);  // it may never end
   file.size_ = static_cast<std::uint64_t>(status.st_size);
   return file;
 }
@@ -198,33 +208,91 @@ Result<void> OutputFile::commit() {
 
 Result<StagingFolder> StagingFolder::create(const std::filesystem::path& output) {
   StagingFolder staging;
-  const std::filesystem::path folder = output.has_parent_path() ? output.parent_path() : ".";
-  const std::filesystem::path path = folder / fmt::format(".{}.{}.tmp", output.filename().string(), ::getpid());
+  staging.folder_ = output.parent_path();
+  const std::filesystem::path hidden =
+      staging.folder_ / fmt::format(".{}.{}.tmp", output.filename().string(), ::getpid());
   std::error_code error;
-  if (!std::filesystem::create_directory(path, error)) {
-    return fail(ErrorCode::cannot_write, error ? error.message() : path.string() + " is in the way", output.string(),
-                "does its folder exist, and may you write there?");
+  if (!std::filesystem::create_directory(hidden, error)) {
+    if (error) {
+      return fail(ErrorCode::cannot_write, error.message(), output.string(),
+                  "does its folder exist, and may you write there?");
+    }
+    return fail(ErrorCode::cannot_write,
+                fmt::format("{} is in the way, left by a run that was killed", hidden.string()), output.string(),
+                "remove it");
   }
-  staging.path_ = path;
+  staging.hidden_ = hidden;
+  for (const char* inner : {"new", "old"}) {
+    std::filesystem::create_directory(hidden / inner, error);
+    if (error) return fail(ErrorCode::cannot_write, error.message(), output.string());
+  }
   return staging;
 }
 
-StagingFolder::StagingFolder(StagingFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+StagingFolder::StagingFolder(StagingFolder&& other) noexcept
+    : folder_(std::move(other.folder_)), hidden_(std::exchange(other.hidden_, {})), keep_hidden_(other.keep_hidden_) {}
 
 StagingFolder::~StagingFolder() {
   std::error_code ignored;
-  if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  if (!hidden_.empty() && !keep_hidden_) std::filesystem::remove_all(hidden_, ignored);
 }
 
 Result<void> StagingFolder::commit() {
+  std::vector<std::filesystem::path> names;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(path_, error)) {
-    const std::filesystem::path to = path_.parent_path() / entry.path().filename();
-    std::filesystem::rename(entry.path(), to, error);
-    if (error) return fail(ErrorCode::cannot_write, error.message(), to.string());
+  for (std::filesystem::directory_iterator entry(path(), error), end; !error && entry != end; entry.increment(error)) {
+    names.push_back(entry->path().filename());
   }
-  if (error) return fail(ErrorCode::cannot_write, error.message(), path_.string());
+  if (error) return fail(ErrorCode::cannot_write, error.message(), hidden_.string());
+  std::sort(names.begin(), names.end());  // the same order everywhere
+  if (const Result<void> free = check_places(names); !free) return free;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const int error_number = put_in_place(names[i]);
+    if (error_number == 0) continue;
+    for (std::size_t placed = i; placed-- > 0;) {
+      if (!restore(names[placed])) ::unlink(place_of(names[placed]).c_str());
+    }
+    return fail(ErrorCode::cannot_write, reason(error_number), place_of(names[i]).string(),
+                keep_hidden_ ? "older files are in " + (hidden_ / "old").string() : "nothing was changed");
+  }
   return {};
+}
+
+// What can be known before anything is moved.
+Result<void> StagingFolder::check_places(const std::vector<std::filesystem::path>& names) const {
+  const std::filesystem::path folder = folder_.empty() ? "." : folder_;
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    return fail(ErrorCode::cannot_write, reason(errno), folder.string(), "choose a folder that you may write to");
+  }
+  std::error_code ignored;
+  for (const std::filesystem::path& name : names) {
+    if (!std::filesystem::is_directory(place_of(name), ignored)) continue;
+    return fail(ErrorCode::cannot_write, "is a directory", place_of(name).string(),
+                "move it away, or choose another name");
+  }
+  return {};
+}
+
+// Returns 0 or the error number; then the older file, if there is one, is still or again in its place.
+int StagingFolder::put_in_place(const std::filesystem::path& name) {
+  const std::filesystem::path place = place_of(name), old = aside(name);
+  // A second name for the older file, so that the first leads to a whole file at any time; where the file system has no
+  // second names, it is moved.
+  const bool kept = ::link(place.c_str(), old.c_str()) == 0 || errno == ENOENT ||
+                    ::rename(place.c_str(), old.c_str()) == 0 || errno == ENOENT;
+  if (!kept) return errno;
+  if (::rename((path() / name).c_str(), place.c_str()) == 0) return 0;
+  const int error_number = errno;
+  restore(name);
+  return error_number;
+}
+
+// Puts the older file back into its place; false if there was none.
+bool StagingFolder::restore(const std::filesystem::path& name) {
+  if (::rename(aside(name).c_str(), place_of(name).c_str()) == 0) return true;
+  if (errno == ENOENT) return false;
+  keep_hidden_ = true;  // better a hidden folder that stays than an older file that is lost
+  return true;
 }
 
 }  // namespace lodestone

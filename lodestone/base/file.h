@@ -7,15 +7,16 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lodestone/base/result.h"
 
 namespace lodestone {
 
-/// A regular file (or pipe) opened for reading in order. Move-only.
+/// A regular file opened for reading in order. Move-only.
 class InputFile {
  public:
-  /// Errors: cannot_read (missing, a directory, no permission), with a line for the user.
+  /// Errors: cannot_read (missing, no permission, a directory, a pipe, a device), with a line for the user.
   static Result<InputFile> open(const std::filesystem::path& path);
   InputFile(InputFile&& other) noexcept;
   InputFile& operator=(InputFile&& other) noexcept;
@@ -85,13 +86,23 @@ class StagingFolder {
   StagingFolder& operator=(StagingFolder&&) = delete;
   ~StagingFolder();
 
-  const std::filesystem::path& path() const { return path_; }
-  /// Moves every file in it to its place, over older ones. Errors: cannot_write.
+  /// Where to write.
+  std::filesystem::path path() const { return hidden_ / "new"; }
+  /// Moves every file in path() to its place, over older ones: all of them, or, on an error, none; older files are then
+  /// back as they were. Errors: cannot_write, with the place that could not be taken.
   Result<void> commit();
 
  private:
   StagingFolder() = default;
-  std::filesystem::path path_;
+  std::filesystem::path place_of(const std::filesystem::path& name) const { return folder_ / name; }
+  std::filesystem::path aside(const std::filesystem::path& name) const { return hidden_ / "old" / name; }
+  Result<void> check_places(const std::vector<std::filesystem::path>& names) const;
+  int put_in_place(const std::filesystem::path& name);
+  bool restore(const std::filesystem::path& name);
+
+  std::filesystem::path folder_;  // of the output; empty = the present one
+  std::filesystem::path hidden_;  // holds "new" and, during commit(), "old"; empty once moved from
+  bool keep_hidden_ = false;
 };
 
 }  // namespace lodestone

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 #include "lodestone/chain/collapse_plan_detail.h"
 
@@ -17,15 +17,6 @@ using detail::CollapsePlan;
 using measure::Reference;
 
 namespace {
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
 
 tl::unexpected<Error> bad(std::string what, std::string remedy) {
   return fail(ErrorCode::bad_argument, std::move(what), {}, std::move(remedy));
@@ -65,7 +56,7 @@ std::vector<std::size_t> count_targets(const LadderOptions& options, std::size_t
   if (!options.triangles.empty()) return options.triangles;
   std::vector<std::size_t> targets;
   const auto share_of = [&](double share) {
-    return std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(drawn) * share));
+    return std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(drawn) * share + 0.5));
   };
   for (const double ratio : options.ratios) targets.push_back(share_of(ratio));
   if (!targets.empty()) return targets;
@@ -88,11 +79,11 @@ Result<Cut> make_cut(const CollapsePlan& plan, std::size_t prefix, const Referen
   const Stopwatch making;
   Result<Model> model = plan.model_after(prefix, task.part(0.3));
   if (!model) return fail(model.error());
-  cut.simplify_seconds = making.seconds();
+  cut.simplify_seconds = making.total();
   const Stopwatch measuring;
   const Result<measure::Distance> d = reference.distance_to(*model, options, task.part(0.7));
   if (!d) return fail(d.error());
-  cut.measure_seconds = measuring.seconds();
+  cut.measure_seconds = measuring.total();
   cut.level.triangles = drawn_triangles(*model);
   cut.level.model = std::move(*model);
   cut.level.method = "edge collapse";
@@ -239,11 +230,11 @@ Result<LadderResult> build_ladder(Model original, const LadderOptions& options, 
   const Result<CollapsePlan> plan =
       CollapsePlan::create(model, smallest, options.keep_border, task.part(0.4, "collapsing"));
   if (!plan) return fail(plan.error());
-  result.simplify_seconds = collapsing.seconds();
+  result.simplify_seconds = collapsing.total();
   const Stopwatch preparing;
   const Result<Reference> reference = Reference::create(model, task.part(0.05, "preparing to measure"));
   if (!reference) return fail(reference.error());
-  result.measure_seconds = preparing.seconds();
+  result.measure_seconds = preparing.total();
   result.ladder.levels.push_back(original_level(model, reference->diagonal()));
   const Task measuring = task.part(0.55, "measuring");
   const Result<void> added = options.errors.empty()
@@ -265,11 +256,11 @@ Result<SimplifyModelResult> simplify_model(const Model& original, const Simplify
                                                          options.keep_border, task.part(0.5, "collapsing"));
   if (!plan) return fail(plan.error());
   SimplifyModelResult result;
-  result.simplify_seconds = collapsing.seconds();
+  result.simplify_seconds = collapsing.total();
   const Stopwatch preparing;
   const Result<Reference> reference = Reference::create(original, task.part(0.1, "preparing to measure"));
   if (!reference) return fail(reference.error());
-  result.measure_seconds = preparing.seconds();
+  result.measure_seconds = preparing.total();
   const Task rest = task.part(0.4, "measuring");
   Result<Cut> cut =
       by_count ? make_cut(*plan, plan->prefix_for(options.target_triangles), *reference, options.distance, rest)

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,6 +38,9 @@ struct Model {
   bool uv_origin_top = false;
   std::uint64_t file_vertices = 0;   ///< as stored in the file, before welding
   std::uint64_t file_triangles = 0;  ///< as stored in the file, polygons cut into triangles, nothing left out
+  /// What it was read from: the file that was named, then those that this one names (buffers, images, material
+  /// libraries). Writers don't replace these by side files. Empty when it was made in memory.
+  std::vector<std::filesystem::path> files;
   /// What a reader found and put right or left out, in plain words, for the user.
   std::vector<std::string> warnings;
 };

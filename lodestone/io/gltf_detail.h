@@ -72,6 +72,7 @@ struct ExternalImage {
 struct Document::Data {
   std::string name;                                         ///< of the file, for errors
   std::filesystem::path path;                               ///< empty when read from memory
+  std::vector<std::filesystem::path> files;                 ///< buffers and images in files of their own
   Json json;                                                ///< as in the file, but data URIs of buffers removed
   std::vector<std::shared_ptr<const std::string>> storage;  ///< owns all bytes
   std::vector<ByteSpan> buffers;                            ///< one a JSON buffer; empty for fallback buffers
@@ -110,8 +111,6 @@ struct ImageBytes {
   std::string bytes, mime;
 };
 ImageBytes image_bytes(const Document::Data& data, std::size_t image);
-/// "image/png" and so on by the first bytes, or "".
-std::string sniff_mime(std::string_view bytes);
 
 // ---- GLB (glb.cpp) ----
 

@@ -8,6 +8,7 @@
 
 #include "lodestone/base/file.h"
 #include "lodestone/io/gltf_detail.h"
+#include "lodestone/io/image_file_detail.h"
 #include "lodestone/io/meshopt_detail.h"
 #include "lodestone/io/uri_detail.h"
 
@@ -28,16 +29,6 @@ tl::unexpected<Error> unfolds_too_far(const Document::Data& data, std::string_vi
   return fail(ErrorCode::bad_format,
               fmt::format("{} unfold to more than {} times the {} bytes read", what, kUnfoldFactor, data.file_bytes),
               where, "is the file broken?");
-}
-
-std::string sniff_mime(std::string_view bytes) {
-  const auto starts = [&](std::string_view magic) { return bytes.substr(0, magic.size()) == magic; };
-  if (starts("\x89PNG")) return "image/png";
-  if (starts("\xff\xd8\xff")) return "image/jpeg";
-  if (starts("RIFF") && bytes.substr(8, 4) == "WEBP") return "image/webp";
-  if (starts("\xabKTX 20")) return "image/ktx2";
-  if (starts("DDS ")) return "image/vnd-ms.dds";
-  return {};
 }
 
 namespace {
@@ -103,6 +94,7 @@ Result<ByteSpan> external_file(Loader& loader, const std::string& uri, std::uint
   if (known != loader.files.end() && known->second.size() >= limit) return known->second;
   Result<std::string> bytes = read_part(*path, limit);
   if (!bytes) return fail(bytes.error());
+  loader.data.files.push_back(*path);
   return loader.files[path->string()] = keep(loader.data, std::move(*bytes));
 }
 
@@ -171,7 +163,7 @@ Result<void> load_images(Loader& loader) {
       loader.warnings.push_back(fmt::format("image {} ('{}') could not be read: {}", i, uri, file.error().what));
       continue;
     }
-    std::string mime = sniff_mime(as_text(*file));
+    std::string mime = image_mime(*file);
     if (mime.empty()) mime = string_member(images[i], "mimeType");
     loader.data.images.push_back({i, std::move(mime), *file});
   }
@@ -318,7 +310,7 @@ ImageBytes image_bytes(const Document::Data& data, std::size_t image) {
     if (!decoded) return {};
     out.bytes = std::move(decoded->bytes);
   }
-  out.mime = sniff_mime(out.bytes);
+  out.mime = image_mime(as_bytes_of(out.bytes));
   if (out.mime.empty()) out.mime = string_member(json, "mimeType");
   return out;
 }

@@ -69,6 +69,7 @@ Result<Model> read_document(std::string bytes, std::string name, const std::file
       load_document(std::move(bytes), std::move(name), path, model.warnings, task.part(0.3));
   if (!loaded) return fail(loaded.error());
   Document::Data& data = **loaded;
+  model.files = data.files;
   warn_of_required(data, model.warnings);
   Budget budget = unfold_budget(data.file_bytes);
   if (const Result<void> ok = read_meshes(data, model, budget, task.part(0.7)); !ok) return fail(ok.error());

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <utility>
 
-#include "lodestone/base/file.h"
 #include "lodestone/io/image_file_detail.h"
+#include "lodestone/io/text_reader_detail.h"
 
 namespace lodestone::io {
 
@@ -77,6 +78,54 @@ std::shared_ptr<const Image> load_image_near(const std::filesystem::path& folder
   }
   image->encoded.assign(as_bytes.begin(), as_bytes.end());
   return image;
+}
+
+namespace {
+
+// Without folders of either spelling, line ends, and a '-' in front, which an MTL takes for an option.
+std::string plain_name(std::string_view name) {
+  std::string out(name.substr(name.find_last_of("/\\") + 1));
+  std::replace_if(
+      out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, '_');
+  out = std::string(trimmed(out));
+  if (out == "." || out == "..") return {};
+  if (out.starts_with('-')) out.front() = '_';
+  return out;
+}
+
+// A glTF gives each material an image of its own, be it the same.
+bool same_image(const Image& a, const Image& b) { return a.name == b.name && a.encoded == b.encoded; }
+
+}  // namespace
+
+std::vector<TextureFile> texture_files(std::span<const Material> materials, const std::filesystem::path& model) {
+  const std::string stem = model.stem().string();
+  std::vector<TextureFile> files;
+  std::set<std::string> taken{model.filename().string(), stem + ".mtl"};
+  for (const Material& m : materials) {
+    const Image* image = m.base_color_texture.get();
+    if (image == nullptr || image->encoded.empty() || !texture_name(files, image).empty()) continue;
+    std::string name = plain_name(image->name);
+    if (name.empty()) name = fmt::format("{}_texture{}", stem, files.size());
+    if (std::filesystem::path(name).extension().empty()) name += image_extension(image->mime);
+    while (!taken.insert(name).second) name.insert(0, 1, '_');
+    files.push_back({image, std::move(name)});
+  }
+  return files;
+}
+
+std::string_view texture_name(std::span<const TextureFile> files, const Image* image) {
+  if (image == nullptr) return {};
+  for (const TextureFile& file : files) {
+    if (file.image == image || same_image(*file.image, *image)) return file.name;
+  }
+  return {};
+}
+
+Result<OutputFile> write_texture(const TextureFile& texture, const std::filesystem::path& model) {
+  Result<OutputFile> file = OutputFile::create(std::filesystem::path(model).replace_filename(texture.name));
+  if (file) file->write(std::span<const std::byte>(texture.image->encoded));
+  return file;
 }
 
 }  // namespace lodestone::io

@@ -1,4 +1,4 @@
-// Image files that a model names: found in the model's own folder, loaded undecoded.
+// Image files that a model names: found in the model's own folder, loaded undecoded, and written beside it.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lodestone/base/file.h"
 #include "lodestone/core/material.h"
 
 namespace lodestone::io {
@@ -28,5 +29,20 @@ std::optional<std::filesystem::path> path_inside(const std::filesystem::path& fo
 /// a warning.
 std::shared_ptr<const Image> load_image_near(const std::filesystem::path& folder, std::string_view name,
                                              std::vector<std::string>& warnings);
+
+/// An image that is written beside a model, and its file name there.
+struct TextureFile {
+  const Image* image = nullptr;
+  std::string name;
+};
+
+/// The base colour textures of the materials, each image once, in order of first use; those without bytes are left out.
+/// Their names are the images' own without folders, safe to stand in a line of text, all different and different from
+/// `model` and its .mtl.
+std::vector<TextureFile> texture_files(std::span<const Material> materials, const std::filesystem::path& model);
+/// The name of the image's file; empty if it has none.
+std::string_view texture_name(std::span<const TextureFile> files, const Image* image);
+/// Opens the file beside `model` and writes the image; the caller commits. Errors: cannot_write.
+Result<OutputFile> write_texture(const TextureFile& texture, const std::filesystem::path& model);
 
 }  // namespace lodestone::io

@@ -1,5 +1,7 @@
 #include "lodestone/io/mtl.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -25,8 +27,26 @@ std::size_t take_numbers(std::string_view& rest, float* into, std::size_t count)
 
 float share(float value) { return value >= 0 ? std::min(value, 1.0F) : 0.0F; }
 
+// The kinds of lines that are not understood, each once, in order of first use.
+class LeftOut {
+ public:
+  explicit LeftOut(std::vector<std::string>& kinds) : kinds_(kinds) {}
+
+  void add(std::string_view kind) {
+    if (kinds_.size() > kMost || !std::all_of(kind.begin(), kind.end(), is_printable)) return;
+    const std::string lower = lower_case(kind);
+    if (std::any_of(kinds_.begin(), kinds_.end(), [&](const std::string& k) { return lower_case(k) == lower; })) return;
+    kinds_.push_back(kinds_.size() == kMost ? "others" : std::string(kind));
+  }
+
+ private:
+  static constexpr std::size_t kMost = 12;  // a damaged file may hold any number
+  static bool is_printable(char c) { return c >= 0x20 && c < 0x7f; }
+  std::vector<std::string>& kinds_;
+};
+
 // The file name of a map line, which may hold blanks, behind its options.
-std::string_view map_name(std::string_view rest) {
+std::string_view map_name(std::string_view rest, LeftOut& left_out) {
   while (true) {
     std::string_view ahead = trimmed(rest);
     if (!ahead.starts_with('-')) return ahead;
@@ -44,17 +64,21 @@ std::string_view map_name(std::string_view rest) {
     } else {
       return trimmed(rest);  // a name that begins with '-'
     }
+    left_out.add(fmt::format("map_Kd {}", option));
     rest = ahead;
   }
 }
 
 class MtlParser {
  public:
-  MtlParser(const std::filesystem::path& folder, std::vector<Material>& materials, std::vector<std::string>& warnings)
-      : folder_(folder), materials_(materials), warnings_(warnings) {}
+  MtlParser(const std::filesystem::path& folder, std::vector<Material>& materials, std::vector<std::string>& left_out,
+            std::vector<std::string>& warnings)
+      : folder_(folder), materials_(materials), left_out_(left_out), warnings_(warnings) {}
 
   void line(std::string_view rest) {
-    const std::string key = lower_case(next_word(rest));
+    const std::string_view word = next_word(rest);
+    if (word.empty() || word.front() == '#') return;
+    const std::string key = lower_case(word);
     if (key == "newmtl") {
       finish();
       Material material;
@@ -79,7 +103,9 @@ class MtlParser {
     } else if (key == "pm") {
       if (take_numbers(rest, v, 1) == 1) material.metallic = share(v[0]);
     } else if (key == "map_kd") {
-      material.base_color_texture = image(map_name(rest));
+      material.base_color_texture = image(map_name(rest, left_out_));
+    } else {
+      left_out_.add(word.substr(0, 40));
     }
   }
 
@@ -100,6 +126,7 @@ class MtlParser {
 
   const std::filesystem::path& folder_;
   std::vector<Material>& materials_;
+  LeftOut left_out_;
   std::vector<std::string>& warnings_;
   std::map<std::string, std::shared_ptr<const Image>> images_;
   bool open_ = false;
@@ -108,15 +135,28 @@ class MtlParser {
 }  // namespace
 
 void read_mtl(std::string_view text, const std::filesystem::path& folder, std::vector<Material>& materials,
-              std::vector<std::string>& warnings) {
+              std::vector<std::string>& left_out, std::vector<std::string>& warnings) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  MtlParser parser(folder, materials, warnings);
+  MtlParser parser(folder, materials, left_out, warnings);
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     parser.line(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   parser.finish();
+}
+
+std::string mtl_text(std::span<const Material> materials, std::span<const std::string> names,
+                     std::span<const std::string> textures) {
+  std::string out = "# made by Lodestone\n";
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& m = materials[i];
+    const std::array<float, 4>& color = m.base_color;
+    out += fmt::format("newmtl {}\nKd {} {} {}\nd {}\n", names[i], color[0], color[1], color[2], color[3]);
+    out += fmt::format("Pr {}\nPm {}\n", m.roughness, m.metallic);
+    if (!textures[i].empty()) out += fmt::format("map_Kd {}\n", textures[i]);
+  }
+  return out;
 }
 
 }  // namespace lodestone::io

@@ -123,14 +123,8 @@ class ObjReader {
     std::size_t n = 0;
     while (n < 8 && scanner.number(v[n])) ++n;
     if (n < 3 || (n < 8 && !scanner.at_end())) return bad_number(scanner);
-    if (n >= 6) {
-      data_.start_colors();
-      data_.has_alpha = data_.has_alpha || n == 7;
-      for (std::size_t c = 0; c < 4; ++c)
-        data_.colors.push_back(3 + c < std::min<std::size_t>(n, 7) ? static_cast<float>(v[3 + c]) : 1.0F);
-    } else if (!data_.colors.empty()) {
-      data_.colors.insert(data_.colors.end(), 4, 1.0F);
-    }
+    const std::size_t color_parts = n < 6 ? 0 : n == 7 ? 4 : 3;
+    data_.add_color(v + 3, color_parts);
     data_.positions.push_back({v[0], v[1], v[2]});
     return {};
   }

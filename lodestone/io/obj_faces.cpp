@@ -94,6 +94,28 @@ void ObjFaces::add_polygon(const ObjData& data, std::uint32_t group) {
   if (group > 0 || !face_group_.empty()) face_group_.resize(triangles_.size(), group);
 }
 
+namespace {
+
+// Colours by wedge; vertices without one are white. `wedge_vertex` empty: wedge is vertex.
+AttributeStream color_stream(const ObjData& data, const std::vector<std::uint32_t>& wedge_vertex, std::size_t wedges) {
+  const bool has_alpha = std::find(data.color_parts.begin(), data.color_parts.end(), 4) != data.color_parts.end();
+  const std::uint32_t components = has_alpha ? 4 : 3;
+  const bool bytes = data.color_range.is_bytes();
+  AttributeStream stream = make_stream("COLOR_0", Semantic::color, components,
+                                       bytes ? ComponentType::uint8 : ComponentType::float32, bytes, wedges);
+  auto& values = std::get<std::vector<float>>(stream.values);
+  const float divisor = data.color_range.divisor();
+  for (std::size_t w = 0; w < wedges; ++w) {
+    const std::size_t v = wedge_vertex.empty() ? w : wedge_vertex[w];
+    for (std::size_t c = 0; c < components; ++c) {
+      values[components * w + c] = c < data.color_parts[v] ? data.colors[4 * v + c] / divisor : 1.0F;
+    }
+  }
+  return stream;
+}
+
+}  // namespace
+
 void ObjFaces::fill(Mesh& mesh, Model& model, ObjData& data) {
   model.file_triangles = file_triangles_;
   mesh.triangles = std::move(triangles_);
@@ -147,17 +169,9 @@ void ObjFaces::fill(Mesh& mesh, Model& model, ObjData& data) {
   std::vector<Vec2f>().swap(data.uvs);
   std::vector<std::uint32_t>().swap(table_.key_a);
   if (!data.colors.empty()) {
-    const std::uint32_t components = data.has_alpha ? 4 : 3;
-    AttributeStream stream = make_stream("COLOR_0", Semantic::color, components, ComponentType::float32, false, wedges);
-    auto& values = std::get<std::vector<float>>(stream.values);
-    const float largest = *std::max_element(data.colors.begin(), data.colors.end());
-    const float divisor = largest > 1 ? 255.0F : 1.0F;  // some exporters write 0 to 255
-    for (std::size_t w = 0; w < wedges; ++w) {
-      const std::size_t v = has_wedges_ ? table_.wedge_vertex[w] : w;
-      for (std::size_t c = 0; c < components; ++c) values[components * w + c] = data.colors[4 * v + c] / divisor;
-    }
-    mesh.attributes.push_back(std::move(stream));
+    mesh.attributes.push_back(color_stream(data, table_.wedge_vertex, wedges));
     std::vector<float>().swap(data.colors);
+    std::vector<std::uint8_t>().swap(data.color_parts);
   }
   mesh.wedge_vertex = std::move(table_.wedge_vertex);
   table_ = {};

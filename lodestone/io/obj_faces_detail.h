@@ -8,6 +8,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/core/model.h"
+#include "lodestone/io/color_range_detail.h"
 #include "lodestone/io/obj_words_detail.h"
 #include "lodestone/io/polygon.h"
 #include "lodestone/io/wedge_table_detail.h"
@@ -17,14 +18,22 @@ namespace lodestone::io {
 /// What `v`, `vt` and `vn` lines gave.
 struct ObjData {
   std::vector<Vec3d> positions;
-  std::vector<float> colors;  ///< four a vertex, or empty when no vertex has one
-  bool has_alpha = false;
+  std::vector<float> colors;              ///< four a vertex, as in the file, or empty when no vertex has one
+  std::vector<std::uint8_t> color_parts;  ///< then: how many of the four the file gave (0, 3 or 4)
+  ColorRange color_range;
   std::vector<Vec2f> uvs;
   std::vector<Vec3f> normals;
 
-  /// From here on all vertices have colours; those before are white.
-  void start_colors() {
-    if (colors.empty()) colors.assign(4 * positions.size(), 1.0F);
+  /// Takes the colour of the next vertex: 3 or 4 numbers, or none. Call before its position is appended.
+  void add_color(const double* values, std::size_t parts) {
+    if (parts == 0 && colors.empty()) return;
+    if (colors.empty()) {  // so far none had one
+      colors.resize(4 * positions.size());
+      color_parts.resize(positions.size());
+    }
+    color_parts.push_back(static_cast<std::uint8_t>(parts));
+    for (std::size_t c = 0; c < 4; ++c) colors.push_back(c < parts ? static_cast<float>(values[c]) : 0.0F);
+    for (std::size_t c = 0; c < parts; ++c) color_range.add(values[c]);
   }
   void clear() { *this = {}; }
 };

@@ -38,15 +38,18 @@ std::uint32_t ObjMaterials::group() {
 }
 
 // A library line names one file, whose name may hold blanks, or several.
-std::vector<Material> ObjMaterials::load_libraries(std::vector<std::string>& warnings) const {
+std::vector<Material> ObjMaterials::load_libraries(std::vector<std::filesystem::path>& files,
+                                                   std::vector<std::string>& warnings) const {
   std::vector<Material> materials;
+  std::vector<std::string> left_out;
   const auto load = [&](std::string_view name) {
     const std::optional<std::filesystem::path> path = path_inside(*folder_, name);
     std::error_code ignored;
     if (!path || !std::filesystem::is_regular_file(*path, ignored)) return false;
     const Result<std::string> text = read_file(*path);
     if (!text) return false;
-    read_mtl(*text, *folder_, materials, warnings);
+    files.push_back(*path);
+    read_mtl(*text, *folder_, materials, left_out, warnings);
     return true;
   };
   std::size_t missing = 0;
@@ -64,12 +67,15 @@ std::vector<Material> ObjMaterials::load_libraries(std::vector<std::string>& war
                                    counted(missing, "material library was", "material libraries were"), first_missing,
                                    missing > 1 ? " and others" : ""));
   }
+  if (!left_out.empty()) {
+    warnings.push_back(fmt::format("properties of materials were left out: {}", fmt::join(left_out, ", ")));
+  }
   return materials;
 }
 
 void ObjMaterials::fill(Model& model) const {
   if (!used_.empty()) {
-    const std::vector<Material> known = load_libraries(model.warnings);
+    const std::vector<Material> known = load_libraries(model.files, model.warnings);
     std::map<std::string_view, const Material*> by_name;  // the first of a name counts
     for (const Material& material : known) by_name.try_emplace(material.name, &material);
     std::size_t unknown = 0;

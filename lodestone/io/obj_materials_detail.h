@@ -30,7 +30,8 @@ class ObjMaterials {
   void fill(Model& model) const;
 
  private:
-  std::vector<Material> load_libraries(std::vector<std::string>& warnings) const;
+  std::vector<Material> load_libraries(std::vector<std::filesystem::path>& files,
+                                       std::vector<std::string>& warnings) const;
 
   const std::filesystem::path* folder_;
   std::vector<std::string> libraries_;  // in order of first mention

@@ -8,6 +8,9 @@
 
 #include "lodestone/base/file.h"
 #include "lodestone/io/flat_mesh_detail.h"
+#include "lodestone/io/image_file_detail.h"
+#include "lodestone/io/mtl.h"
+#include "lodestone/io/read_detail.h"
 #include "lodestone/io/write_detail.h"
 
 namespace lodestone::io {
@@ -23,51 +26,93 @@ std::string word(std::string_view name, std::string_view fallback) {
   return out;
 }
 
-std::vector<std::string> material_names(const Model& model) {
-  std::vector<std::string> names;
-  std::set<std::string> taken;
-  for (std::size_t i = 0; i < model.materials.size(); ++i) {
-    std::string name = word(model.materials[i].name, fmt::format("material_{}", i));
-    while (!taken.insert(name).second) name += "_";
-    names.push_back(std::move(name));
-  }
-  return names;
-}
-
-// Texture files beside the OBJ: their last path component, made different where two images have the same.
-std::map<const Image*, std::string> texture_files(const Model& model, const std::string& stem) {
-  std::map<const Image*, std::string> files;
-  std::set<std::string> taken;
-  for (const Material& m : model.materials) {
-    const Image* image = m.base_color_texture.get();
-    if (image == nullptr || image->encoded.empty() || files.contains(image)) continue;
-    std::string name = std::filesystem::path(image->name).filename().string();
-    const std::string extension = image->mime == "image/jpeg" ? ".jpg" : image->mime == "image/webp" ? ".webp" : ".png";
-    if (name.empty()) name = fmt::format("{}_texture{}", stem, files.size());
-    if (std::filesystem::path(name).extension().empty()) name += extension;
-    while (!taken.insert(name).second) name = "_" + name;
-    files[image] = name;
-  }
-  return files;
-}
-
-std::string mtl_text(const Model& model, const std::vector<std::string>& names,
-                     const std::map<const Image*, std::string>& textures) {
-  std::string out = "# made by Lodestone\n";
-  for (std::size_t i = 0; i < model.materials.size(); ++i) {
-    const Material& m = model.materials[i];
-    out += fmt::format("newmtl {}\nKd {} {} {}\nd {}\n", names[i], m.base_color[0], m.base_color[1], m.base_color[2],
-                       m.base_color[3]);
-    const auto texture = textures.find(m.base_color_texture.get());
-    if (texture != textures.end()) out += fmt::format("map_Kd {}\n", texture->second);
-  }
+// The word, made different from all that are taken.
+std::string new_word(std::string_view name, std::string_view fallback, std::set<std::string>& taken) {
+  std::string out = word(name, fallback);
+  while (!taken.insert(out).second) out += "_";
   return out;
 }
 
-const std::vector<float>* floats_of(const Mesh& mesh, Semantic semantic, std::size_t components) {
+// What the .mtl holds, and the words of `usemtl` and `g` for each group; empty words: the line is left out.
+struct ObjNames {
+  std::vector<Material> materials;
+  std::vector<std::string> material_words;  // one a material
+  std::vector<std::string> usemtl, g;       // one a group
+};
+
+// Without a `usemtl` of its own, a group would get that of the group before it: where some have a material, the others
+// get a white one that stands for none.
+void name_materials(const Model& model, const Mesh& mesh, ObjNames& names) {
+  names.materials = model.materials;
+  std::set<std::string> taken;
+  for (std::size_t i = 0; i < model.materials.size(); ++i) {
+    names.material_words.push_back(new_word(model.materials[i].name, fmt::format("material_{}", i), taken));
+  }
+  const auto has_material = [&](const FaceGroup& g) { return g.material < model.materials.size(); };
+  const bool any = std::any_of(mesh.groups.begin(), mesh.groups.end(), has_material);
+  const bool all = std::all_of(mesh.groups.begin(), mesh.groups.end(), has_material);
+  std::string none;
+  if (any && !all) {
+    none = new_word("none", {}, taken);
+    names.materials.emplace_back();
+    names.material_words.push_back(none);
+  }
+  for (const FaceGroup& g : mesh.groups) {
+    names.usemtl.push_back(has_material(g) ? names.material_words[g.material] : none);
+  }
+}
+
+// The same for `g`; "default" is what OBJ calls faces before the first one.
+void name_groups(const Mesh& mesh, ObjNames& names) {
+  std::set<std::string> taken;
+  std::map<std::string, std::string> words;  // by name, so that groups of one name still have one
+  for (const FaceGroup& g : mesh.groups) {
+    if (!g.name.empty() && !words.contains(g.name)) words[g.name] = new_word(g.name, {}, taken);
+  }
+  if (!words.empty()) words[""] = new_word("default", {}, taken);
+  for (const FaceGroup& g : mesh.groups) names.g.push_back(words.empty() ? std::string() : words[g.name]);
+}
+
+// The numbers of a stream, in the precision that it has.
+struct Numbers {
+  const float* floats = nullptr;
+  const double* doubles = nullptr;
+  std::size_t width = 0;  // numbers a wedge
+
+  explicit operator bool() const { return floats != nullptr || doubles != nullptr; }
+  double operator[](std::size_t i) const { return floats != nullptr ? static_cast<double>(floats[i]) : doubles[i]; }
+  void append(std::string& line, std::size_t i, bool turned = false) const {
+    if (floats != nullptr) {
+      append_number(line, turned ? 1 - floats[i] : floats[i]);
+    } else {
+      append_number(line, turned ? 1 - doubles[i] : doubles[i]);
+    }
+  }
+};
+
+// None for a stream that OBJ does not hold.
+Numbers numbers_of(const AttributeStream& s) {
+  const bool held = s.set == 0 && ((s.semantic == Semantic::uv && s.components == 2) ||
+                                   (s.semantic == Semantic::normal && s.components == 3) ||
+                                   (s.semantic == Semantic::color && s.components >= 3));
+  Numbers out;
+  if (!held) return out;
+  out.width = s.components;
+  if (const auto* floats = std::get_if<std::vector<float>>(&s.values)) out.floats = floats->data();
+  if (const auto* doubles = std::get_if<std::vector<double>>(&s.values)) out.doubles = doubles->data();
+  return out;
+}
+
+Numbers find_numbers(const Mesh& mesh, Semantic semantic) {
   const AttributeStream* stream = find_stream(mesh, semantic);
-  if (stream == nullptr || stream->components != components) return nullptr;
-  return std::get_if<std::vector<float>>(&stream->values);
+  return stream == nullptr ? Numbers{} : numbers_of(*stream);
+}
+
+// OBJ has one colour a vertex: its first wedge's.
+std::vector<std::uint32_t> first_wedges(const Mesh& mesh) {
+  std::vector<std::uint32_t> first(mesh.vertex_count(), 0);
+  for (auto w = static_cast<std::uint32_t>(mesh.wedge_count()); w-- > 0;) first[mesh.vertex_of(w)] = w;
+  return first;
 }
 
 class ObjText {
@@ -77,30 +122,22 @@ class ObjText {
         mesh_(mesh),
         file_(file),
         task_(task),
-        uv_(floats_of(mesh, Semantic::uv, 2)),
-        normal_(floats_of(mesh, Semantic::normal, 3)) {
-    const AttributeStream* color = find_stream(mesh, Semantic::color);
-    if (color != nullptr && color->components >= 3) {
-      color_ = std::get_if<std::vector<float>>(&color->values);
-      color_width_ = color->components;
-    }
-  }
+        uv_(find_numbers(mesh, Semantic::uv)),
+        normal_(find_numbers(mesh, Semantic::normal)),
+        color_(find_numbers(mesh, Semantic::color)) {}
 
-  void write(const std::vector<std::string>& materials) {
+  void write(const ObjNames& names) {
     write_vertices();
-    write_wedges("vt", uv_, 2);
-    write_wedges("vn", normal_, 3);
-    write_faces(materials);
+    write_wedges("vt", uv_, model_.uv_origin_top);
+    write_wedges("vn", normal_, false);
+    write_faces(names);
   }
 
  private:
   bool stop(std::size_t i) const { return i % 65536 == 0 && (task_.cancelled() || file_.failed()); }
 
   void write_vertices() {
-    std::vector<std::uint32_t> wedge(mesh_.vertex_count(), 0);  // OBJ has one colour a vertex: its first wedge's
-    if (color_ != nullptr) {
-      for (std::uint32_t w = static_cast<std::uint32_t>(mesh_.wedge_count()); w-- > 0;) wedge[mesh_.vertex_of(w)] = w;
-    }
+    const std::vector<std::uint32_t> wedge = color_ ? first_wedges(mesh_) : std::vector<std::uint32_t>{};
     std::string line;
     for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v) {
       if (stop(v)) return;
@@ -113,51 +150,48 @@ class ObjText {
           append_number(line, mesh_.position(v)[k]);
         }
       }
-      for (std::size_t k = 0; color_ != nullptr && k < 3; ++k) {
+      for (std::size_t k = 0; color_ && k < 3; ++k) {
         line += ' ';
-        append_number(line, (*color_)[wedge[v] * color_width_ + k]);
+        color_.append(line, wedge[v] * color_.width + k);
       }
       line += '\n';
       file_.write(line);
     }
   }
 
-  void write_wedges(const char* key, const std::vector<float>* values, std::size_t n) {
-    if (values == nullptr) return;
+  void write_wedges(const char* key, const Numbers& numbers, bool turn_second) {
+    if (!numbers) return;
     std::string line;
     for (std::size_t w = 0; w < mesh_.wedge_count(); ++w) {
       if (stop(w)) return;
       line = key;
-      for (std::size_t k = 0; k < n; ++k) {
-        float value = (*values)[w * n + k];
-        if (n == 2 && k == 1 && model_.uv_origin_top) value = 1 - value;
+      for (std::size_t k = 0; k < numbers.width; ++k) {
         line += ' ';
-        append_number(line, value);
+        numbers.append(line, w * numbers.width + k, turn_second && k == 1);
       }
       line += '\n';
       file_.write(line);
     }
   }
 
-  void write_faces(const std::vector<std::string>& materials) {
+  void write_faces(const ObjNames& names) {
     std::uint32_t group = kNone;
     std::string line;
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       if (stop(t)) return;
       if (!mesh_.groups.empty() && mesh_.group_of(t) != group) {
         group = mesh_.group_of(t);
-        const FaceGroup& g = mesh_.groups[group];
-        if (!g.name.empty()) file_.write(fmt::format("g {}\n", word(g.name, "default")));
-        if (g.material < materials.size()) file_.write(fmt::format("usemtl {}\n", materials[g.material]));
+        if (!names.g[group].empty()) file_.write(fmt::format("g {}\n", names.g[group]));
+        if (!names.usemtl[group].empty()) file_.write(fmt::format("usemtl {}\n", names.usemtl[group]));
       }
       line = "f";
       for (const std::uint32_t w : mesh_.triangles[t]) {
         line += fmt::format(" {}", mesh_.vertex_of(w) + 1);
-        if (uv_ != nullptr && normal_ != nullptr) {
+        if (uv_ && normal_) {
           line += fmt::format("/{}/{}", w + 1, w + 1);
-        } else if (uv_ != nullptr) {
+        } else if (uv_) {
           line += fmt::format("/{}", w + 1);
-        } else if (normal_ != nullptr) {
+        } else if (normal_) {
           line += fmt::format("//{}", w + 1);
         }
       }
@@ -170,18 +204,53 @@ class ObjText {
   const Mesh& mesh_;
   OutputFile& file_;
   const Task& task_;
-  const std::vector<float>* uv_;
-  const std::vector<float>* normal_;
-  const std::vector<float>* color_ = nullptr;
-  std::size_t color_width_ = 3;
+  Numbers uv_, normal_, color_;
 };
+
+void warn_of_left_out_colors(const Mesh& mesh, const Numbers& color, std::vector<std::string>& warnings) {
+  const std::vector<std::uint32_t> first = first_wedges(mesh);
+  std::vector<bool> several(mesh.vertex_count(), false);
+  bool has_alpha = false;
+  for (std::uint32_t w = 0; w < mesh.wedge_count(); ++w) {
+    const std::uint32_t v = mesh.vertex_of(w);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (color[w * color.width + k] != color[first[v] * color.width + k]) several[v] = true;
+    }
+    has_alpha = has_alpha || (color.width > 3 && color[w * color.width + 3] != 1);
+  }
+  const auto count = static_cast<std::uint64_t>(std::count(several.begin(), several.end(), true));
+  if (count > 0) {
+    warnings.push_back(fmt::format("OBJ holds one colour a vertex: {} with several keep the first",
+                                   counted(count, "vertex", "vertices")));
+  }
+  if (has_alpha) warnings.push_back("OBJ does not hold the alpha of colours: left out");
+}
 
 void warn_of_left_out(const Mesh& mesh, std::vector<std::string>& warnings) {
   for (const AttributeStream& s : mesh.attributes) {
-    const bool held = s.set == 0 && ((s.semantic == Semantic::uv && s.components == 2) ||
-                                     s.semantic == Semantic::normal || s.semantic == Semantic::color);
-    if (!held) warnings.push_back(fmt::format("OBJ does not hold attribute '{}': left out", s.name));
+    if (!numbers_of(s)) warnings.push_back(fmt::format("OBJ does not hold attribute '{}': left out", s.name));
   }
+  if (const Numbers color = find_numbers(mesh, Semantic::color)) warn_of_left_out_colors(mesh, color, warnings);
+}
+
+// The .mtl and the textures that it names, written but not yet under their names.
+Result<void> write_materials(const ObjNames& names, const std::filesystem::path& path, std::vector<OutputFile>& files) {
+  const std::vector<TextureFile> textures = texture_files(names.materials, path);
+  std::vector<std::string> texture_names;
+  for (const Material& m : names.materials) {
+    texture_names.emplace_back(texture_name(textures, m.base_color_texture.get()));
+  }
+  Result<OutputFile> mtl =
+      OutputFile::create(std::filesystem::path(path).replace_filename(path.stem().string() + ".mtl"));
+  if (!mtl) return fail(mtl.error());
+  mtl->write(mtl_text(names.materials, names.material_words, texture_names));
+  files.push_back(std::move(*mtl));
+  for (const TextureFile& texture : textures) {
+    Result<OutputFile> image = write_texture(texture, path);
+    if (!image) return fail(image.error());
+    files.push_back(std::move(*image));
+  }
+  return {};
 }
 
 }  // namespace
@@ -191,31 +260,17 @@ Result<WriteReport> write_obj(const Model& model, const std::filesystem::path& p
   std::vector<std::string> warnings;
   const Mesh mesh = flatten_to_mesh(model, warnings);
   warn_of_left_out(mesh, warnings);
-  const std::vector<std::string> names = material_names(model);
-  const std::string stem = path.stem().string();
+  ObjNames names;
+  name_materials(model, mesh, names);
+  name_groups(mesh, names);
 
   std::vector<OutputFile> files;
   Result<OutputFile> obj = OutputFile::create(path);
   if (!obj) return fail(obj.error());
   obj->write("# made by Lodestone\n");
-  if (!model.materials.empty()) {
-    obj->write(fmt::format("mtllib {}.mtl\n", stem));
-    const std::map<const Image*, std::string> textures = texture_files(model, stem);
-    Result<OutputFile> mtl = OutputFile::create(std::filesystem::path(path).replace_filename(stem + ".mtl"));
-    if (!mtl) return fail(mtl.error());
-    mtl->write(mtl_text(model, names, textures));
-    files.push_back(std::move(*mtl));
-    for (const Material& m : model.materials) {
-      const auto texture = textures.find(m.base_color_texture.get());
-      if (texture == textures.end()) continue;
-      const std::filesystem::path image_path = std::filesystem::path(path).replace_filename(texture->second);
-      if (std::any_of(files.begin(), files.end(), [&](const OutputFile& f) { return f.path() == image_path; }))
-        continue;
-      Result<OutputFile> image = OutputFile::create(image_path);
-      if (!image) return fail(image.error());
-      image->write(std::span<const std::byte>(texture->first->encoded));
-      files.push_back(std::move(*image));
-    }
+  if (!names.materials.empty()) {
+    obj->write(fmt::format("mtllib {}.mtl\n", path.stem().string()));
+    if (const Result<void> ok = write_materials(names, path, files); !ok) return fail(ok.error());
   }
   ObjText(model, mesh, *obj, task).write(names);
   if (task.cancelled()) return cancelled_error("writing");

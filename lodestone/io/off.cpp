@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
+#include "lodestone/io/color_range_detail.h"
 #include "lodestone/io/polygon.h"
 #include "lodestone/io/read_detail.h"
 #include "lodestone/io/text_reader_detail.h"
@@ -130,8 +130,7 @@ class OffReader {
       const double* next = numbers.data() + 3;
       for (std::size_t i = 0; i < (has_normal_ ? 3U : 0U); ++i) normals_.push_back(static_cast<float>(*next++));
       for (std::size_t i = 0; i < color_components_; ++i) {
-        whole_colors_ = whole_colors_ && *next == std::floor(*next);
-        largest_color_ = std::max(largest_color_, *next);
+        color_range_.add(*next);
         colors_.push_back(static_cast<float>(*next++));
       }
       for (std::size_t i = 0; i < (has_uv_ ? 2U : 0U); ++i) uvs_.push_back(static_cast<float>(*next++));
@@ -153,12 +152,9 @@ class OffReader {
     if (has_normal_) add_stream("NORMAL", Semantic::normal, 3, std::move(normals_));
     if (has_uv_) add_stream("TEXCOORD_0", Semantic::uv, 2, std::move(uvs_));
     if (!has_color_) return;
-    const bool bytes = whole_colors_ && largest_color_ > 1;
-    if (largest_color_ > 1) {
-      for (float& c : colors_) c = c / 255.0F;
-    }
+    for (float& c : colors_) c /= color_range_.divisor();
     add_stream("COLOR_0", Semantic::color, static_cast<std::uint32_t>(color_components_), std::move(colors_));
-    if (bytes) {
+    if (color_range_.is_bytes()) {
       mesh_.attributes.back().type = ComponentType::uint8;
       mesh_.attributes.back().normalized = true;
     }
@@ -227,10 +223,10 @@ class OffReader {
   Task task_;
   Model model_;
   Mesh& mesh_;
-  bool has_uv_ = false, has_color_ = false, has_normal_ = false, extra_on_line_ = false, whole_colors_ = true;
+  bool has_uv_ = false, has_color_ = false, has_normal_ = false, extra_on_line_ = false;
   std::uint64_t vertices_ = 0, faces_ = 0;
   std::size_t columns_ = 3, color_components_ = 0;
-  double largest_color_ = 0;
+  ColorRange color_range_;
   std::vector<float> normals_, colors_, uvs_;
 };
 

@@ -6,9 +6,12 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "lodestone/base/file.h"
 #include "lodestone/io/flat_mesh_detail.h"
+#include "lodestone/io/image_file_detail.h"
+#include "lodestone/io/read_detail.h"
 #include "lodestone/io/write_detail.h"
 
 namespace lodestone::io {
@@ -88,8 +91,6 @@ std::vector<Columns> plan_columns(const Mesh& mesh, bool flip_v) {
     Columns c{&stream, property_names(stream), stream.type, flip_v && stream.semantic == Semantic::uv};
     const bool bits = std::holds_alternative<std::vector<std::uint32_t>>(stream.values);
     if (!bits && stream.normalized && stream.semantic != Semantic::color) c.type = ComponentType::float32;
-    // Readers expect colours in bytes.
-    if (stream.semantic == Semantic::color && stream.type == ComponentType::float32) c.type = ComponentType::uint8;
     out.push_back(std::move(c));
   }
   return out;
@@ -149,12 +150,42 @@ void append_value(std::string& out, const Columns& c, std::size_t at, std::size_
   if (c.flip_v && component == 1) v = 1 - v;
   if (c.type == ComponentType::float64) return append(out, v);
   if (c.type == ComponentType::float32) return append(out, static_cast<float>(v));
-  const bool scaled = s.normalized || s.type == ComponentType::float32;
-  append_integer(out, scaled ? v * largest_of(c.type) : v, c.type);
+  append_integer(out, s.normalized ? v * largest_of(c.type) : v, c.type);
 }
 
-std::string header_of(const Mesh& mesh, const std::vector<Columns>& columns) {
+// The one texture that a PLY can name, for all its faces; nothing, with a warning, where that doesn't fit.
+std::optional<TextureFile> find_texture(const Model& model, const Mesh& mesh, const std::filesystem::path& path,
+                                        std::vector<std::string>& warnings) {
+  std::vector<Material> drawn;
+  for (const FaceGroup& g : mesh.groups) {
+    if (g.material < model.materials.size()) drawn.push_back(model.materials[g.material]);
+  }
+  std::vector<TextureFile> textures = texture_files(drawn, path);
+  if (textures.empty()) return std::nullopt;
+  if (textures.size() > 1) {
+    warnings.push_back(fmt::format("PLY holds one texture: all {} were left out", textures.size()));
+    return std::nullopt;
+  }
+  const AttributeStream* uv = find_stream(mesh, Semantic::uv);
+  if (uv == nullptr || uv->components != 2) {
+    warnings.push_back(fmt::format("the texture '{}' was left out: there are no UVs", textures[0].name));
+    return std::nullopt;
+  }
+  const auto bare =
+      static_cast<std::uint64_t>(std::count_if(mesh.groups.begin(), mesh.groups.end(), [&](const auto& g) {
+        if (g.material >= model.materials.size()) return true;
+        return texture_name(textures, model.materials[g.material].base_color_texture.get()).empty();
+      }));
+  if (bare > 0) {
+    warnings.push_back(fmt::format("PLY has one texture for all faces: {} without '{}' got it, too",
+                                   counted(bare, "group", "groups"), textures[0].name));
+  }
+  return std::move(textures[0]);
+}
+
+std::string header_of(const Mesh& mesh, const std::vector<Columns>& columns, std::string_view texture) {
   std::string out = "ply\nformat binary_little_endian 1.0\ncomment made by Lodestone\n";
+  if (!texture.empty()) out += fmt::format("comment TextureFile {}\n", texture);
   out += fmt::format("element vertex {}\n", mesh.wedge_count());
   const char* position = mesh.offset == Vec3d{} ? "float" : "double";
   for (const char* axis : {"x", "y", "z"}) out += fmt::format("property {} {}\n", position, axis);
@@ -165,19 +196,10 @@ std::string header_of(const Mesh& mesh, const std::vector<Columns>& columns) {
   return out;
 }
 
-}  // namespace
-
-Result<WriteReport> write_ply(const Model& model, const std::filesystem::path& path, Task task) {
-  if (const Result<void> ok = check_drawn(model, path); !ok) return fail(ok.error());
-  std::vector<std::string> warnings;
-  const Mesh mesh = flatten_to_mesh(model, warnings);
-  const std::vector<Columns> columns = plan_columns(mesh, model.uv_origin_top);
-  Result<OutputFile> file = OutputFile::create(path);
-  if (!file) return fail(file.error());
-  file->write(header_of(mesh, columns));
+void write_vertices(const Mesh& mesh, const std::vector<Columns>& columns, OutputFile& file, const Task& task) {
   std::string record;
   for (std::uint32_t w = 0; w < mesh.wedge_count(); ++w) {
-    if (w % 65536 == 0 && (task.cancelled() || file->failed())) break;
+    if (w % 65536 == 0 && (task.cancelled() || file.failed())) break;
     record.clear();
     const std::uint32_t v = mesh.vertex_of(w);
     if (mesh.offset == Vec3d{}) {
@@ -188,17 +210,44 @@ Result<WriteReport> write_ply(const Model& model, const std::filesystem::path& p
     for (const Columns& c : columns) {
       for (std::size_t k = 0; k < c.names.size(); ++k) append_value(record, c, w * c.names.size() + k, k);
     }
-    file->write(record);
+    file.write(record);
   }
-  record.assign(13, '\3');
+}
+
+void write_faces(const Mesh& mesh, OutputFile& file, const Task& task) {
+  std::string record(13, '\3');
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (t % 65536 == 0 && (task.cancelled() || file->failed())) break;
+    if (t % 65536 == 0 && (task.cancelled() || file.failed())) break;
     std::memcpy(record.data() + 1, mesh.triangles[t].data(), 12);
-    file->write(record);
+    file.write(record);
   }
+}
+
+}  // namespace
+
+Result<WriteReport> write_ply(const Model& model, const std::filesystem::path& path, Task task) {
+  if (const Result<void> ok = check_drawn(model, path); !ok) return fail(ok.error());
+  std::vector<std::string> warnings;
+  const Mesh mesh = flatten_to_mesh(model, warnings);
+  const std::optional<TextureFile> texture = find_texture(model, mesh, path, warnings);
+  std::optional<OutputFile> image;
+  if (texture) {
+    Result<OutputFile> created = write_texture(*texture, path);
+    if (!created) return fail(created.error());
+    image = std::move(*created);
+  }
+  Result<OutputFile> file = OutputFile::create(path);
+  if (!file) return fail(file.error());
+  const std::vector<Columns> columns = plan_columns(mesh, model.uv_origin_top);
+  file->write(header_of(mesh, columns, texture ? texture->name : ""));
+  write_vertices(mesh, columns, *file, task);
+  write_faces(mesh, *file, task);
   if (task.cancelled()) return cancelled_error("writing");
+  if (image) {
+    if (const Result<void> ok = image->commit(); !ok) return fail(ok.error());
+  }
   if (const Result<void> ok = file->commit(); !ok) return fail(ok.error());
-  return single_file_report(path, file->size(), std::move(warnings));
+  return single_file_report(path, file->size() + (image ? image->size() : 0), std::move(warnings));
 }
 
 }  // namespace lodestone::io

@@ -1,6 +1,7 @@
 // Writing models and ladders: one door for every format. Same model, same bytes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -32,9 +33,10 @@ struct WriteReport {
 };
 
 /// Writes one model, by the path's extension: .ply (binary little-endian), .obj (+ .mtl), .stl (binary), .off, .glb,
-/// .gltf
-/// (+ .bin). All or nothing: see base/file.h. Instances are flattened where the format has none.
-/// Errors: cannot_write, unsupported, cancelled.
+/// .gltf (+ .bin). All or nothing: see base/file.h. Instances are flattened where the format has none. Older files of
+/// these names are replaced, but see check_replaced(); a texture beside the model never replaces a file with other
+/// bytes.
+/// Errors: cannot_write, unsupported, bad_argument (compression that the format has not), cancelled.
 Result<WriteReport> write_model(const Model& model, const std::filesystem::path& path, const WriteOptions& options = {},
                                 Task task = {});
 
@@ -42,6 +44,17 @@ Result<WriteReport> write_model(const Model& model, const std::filesystem::path&
 /// binary chunk. "name_LOD{level}.ext": a file a level. Anything else is bad_argument with both spellings named.
 Result<WriteReport> write_ladder(const Ladder& ladder, const std::filesystem::path& path,
                                  const WriteOptions& options = {}, Task task = {});
+
+/// What write_model and write_ladder refuse about a name alone, to be told before the work that leads to them.
+/// Errors: unsupported (extension), bad_argument (compression that the format has not; a ladder in one plain file).
+Result<void> check_model_name(const std::filesystem::path& path, Compression compression);
+Result<void> check_ladder_name(const std::filesystem::path& path, Compression compression);
+
+/// What they refuse to replace, as far as it shows before textures are written; `levels` counts for a "{level}" name.
+/// Neither the output nor its .bin or .mtl may be a file that the input was read from (Model::files), and the .bin or
+/// .mtl replaces an older one only beside an older output. A model may be written over itself, with all that belongs to
+/// it. Errors: cannot_write, with the file and the way out.
+Result<void> check_replaced(const Model& input, const std::filesystem::path& path, std::size_t levels = 1);
 
 /// True if write_model knows the extension (with the dot, any case).
 bool is_writable_extension(std::string_view extension);

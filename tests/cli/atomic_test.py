@@ -20,7 +20,10 @@ class Atomic(Scratch):
             with self.subTest(output):
                 self.assert_error(self.limited("convert", "statue.ply", "-o", output), output[:2])
                 self.assertEqual(self.files(), ["statue.ply"])
-        self.assert_error(self.limited("build", "statue.ply", "-o", "x_LOD{level}.obj"), "x_LOD")
+        for kind in ("obj", "gltf", "ply"):
+            done = self.limited("build", "statue.ply", "-o", f"x_LOD{{level}}.{kind}")
+            self.assert_error(done, "lod: x_LOD0.")
+            self.assertNotIn(".tmp", done.stderr, "names of ours say nothing to the user")
         self.assertEqual(self.files(), ["statue.ply"])
 
     def test_existing_file_is_unharmed_when_the_run_fails(self):
@@ -37,6 +40,21 @@ class Atomic(Scratch):
         self.lod("build", "statue.ply", "-o", "x.glb", "--levels", "2")
         self.assertTrue((self.folder / "x.glb").read_bytes().startswith(b"glTF"))
         self.assertEqual(self.files(), ["statue.ply", "x.glb"])
+
+    def test_levels_replace_all_older_files_or_none(self):
+        (self.folder / "d").mkdir()
+        for name in ("sp_LOD0.ply", "sp_LOD1.ply"):
+            (self.folder / "d" / name).write_text("precious")
+        (self.folder / "d" / "sp_LOD2.ply").mkdir()
+        done = self.lod("build", "statue.ply", "-o", "d/sp_LOD{level}.ply", "--samples", "1000", code=1)
+        self.assert_error(done, "d/sp_LOD2.ply", "directory")
+        self.assertEqual(self.files("d"), ["sp_LOD0.ply", "sp_LOD1.ply", "sp_LOD2.ply"])
+        for name in ("sp_LOD0.ply", "sp_LOD1.ply"):
+            self.assertEqual((self.folder / "d" / name).read_text(), "precious")
+        (self.folder / "d" / "sp_LOD2.ply").rename(self.folder / "d" / "sp_LOD9.ply")  # in nobody's way
+        self.lod("build", "statue.ply", "-o", "d/sp_LOD{level}.ply", "--samples", "1000")
+        for level in range(5):
+            self.assertTrue((self.folder / "d" / f"sp_LOD{level}.ply").read_bytes().startswith(b"ply"))
 
     def test_inputs_are_never_overwritten(self):
         before = (self.folder / "statue.ply").read_bytes()
@@ -68,6 +86,30 @@ class Interrupt(Scratch):
                     self.assertEqual((code, out), (130, ""), err)
                     self.assertEqual(len(err.splitlines()), 1, err)
                     self.assertEqual(self.files(), ["statue.ply"])
+
+    def stop_at_once(self, *numbers):
+        """Sends signals that all arrive together, as the process sleeps until the last is sent."""
+        process = subprocess.Popen([lod_path(), "build", "statue.ply", "-o", "x_LOD{level}.obj", "--samples", "20000000"],
+                                   cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(0.6)
+        for number in (signal.SIGSTOP, *numbers, signal.SIGCONT):
+            process.send_signal(number)
+        _, err = process.communicate(timeout=60)
+        return process, err
+
+    def test_second_signal_leaves_nothing_either_and_tells_of_the_third(self):
+        process, err = self.stop_at_once(signal.SIGINT, signal.SIGTERM)
+        self.assertEqual(process.returncode, 130, err)
+        warning = err.splitlines()[0]
+        for part in ("lod: ", "third", f".{process.pid}.tmp", f"lod-{process.pid}-"):
+            self.assertIn(part, warning)
+        self.assertEqual(self.files(), ["statue.ply"])
+
+    def test_third_signal_ends_it(self):
+        if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN:
+            self.skipTest("run under nohup")
+        process, err = self.stop_at_once(signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+        self.assertLess(process.returncode, 0, err)
 
     def test_samples_stop_too(self):
         for name in ("statue", "terrain"):

@@ -37,6 +37,9 @@ class ExitCodes(Scratch):
                             ((*build, "-o", "statue.ply"), "never overwritten"),
                             ((*build, "-o", "x.glb", "--levels", "1"), "at least 2"),
                             ((*build, "-o", "x.glb", "--levels", "many"), "many"),
+                            ((*build, "-o", "x.glb", "--levels", "33"), "the limit is 32"),
+                            ((*build, "-o", "x.glb", "--levels", "99999999999"), "the limit is 32"),
+                            ((*build, "-o", "x.glb", "--levels", "9" * 30), "the limit is 32"),
                             ((*build, "-o", "x.glb", "--levels", "3", "--ratio", "0.5"), "together"),
                             ((*build, "-o", "x.glb", "--ratio", "1.5"), "between 0 and 1"),
                             ((*build, "-o", "x.glb", "--error", "5parsec"), "5parsec"),
@@ -52,6 +55,14 @@ class ExitCodes(Scratch):
                 self.assert_error(self.lod(*words, code=2), part)
         self.assertEqual(self.files(), ["statue.ply"])
 
+    def test_outputs_that_make_no_sense_are_told_before_anything_is_read(self):
+        for words in (("simplify", "missing.ply", "-o", "y.ply", "--triangles", "9", "--compress", "draco"),
+                      ("convert", "missing.ply", "y.obj", "--compress", "meshopt"),
+                      ("build", "missing.ply", "-o", "y_LOD{level}.stl", "--compress", "draco")):
+            with self.subTest(words):
+                self.assert_error(self.lod(*words, code=2), "no compressed geometry", "--compress")
+        self.assert_error(self.lod("build", "missing.ply", "-o", "y.ply", code=2), "one level", "y.ply", "{level}")
+
     def test_input_that_fails(self):
         (self.folder / "empty.ply").write_bytes(b"")
         (self.folder / "cut.ply").write_bytes((self.folder / "statue.ply").read_bytes()[:2000])
@@ -61,6 +72,15 @@ class ExitCodes(Scratch):
         self.assert_error(self.lod("build", "cut.ply", "-o", "x.glb", code=1), "cut.ply")
         self.assert_error(self.lod("build", "folder", "-o", "out/", code=1), "folder")
         self.assertEqual(self.files(), ["cut.ply", "empty.ply", "folder", "statue.ply"])
+
+    def test_input_that_is_no_file(self):
+        (self.folder / "device.ply").symlink_to("/dev/null")
+        os.mkfifo(self.folder / "pipe.ply")
+        os.mkfifo(self.folder / "pipe.dae")
+        for name in ("device.ply", "pipe.ply", "pipe.dae"):
+            with self.subTest(name):
+                done = self.lod("info", name, code=1, timeout=60)
+                self.assert_error(done, f"lod: {name}: is not a regular file", "copy")
 
     def test_output_that_fails(self):
         (self.folder / "dir.glb").mkdir()
@@ -94,6 +114,16 @@ class ExitCodes(Scratch):
             done = subprocess.run([lod_path(), "info", "statue.ply"], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn("standard output", done.stderr)
+
+    def test_report_that_nobody_takes(self):
+        for output, told in (("x.glb", "x.glb was written"), ("x_LOD{level}.stl", "x_LOD0.stl and 4 more were written")):
+            with open("/dev/full", "w") as full:
+                words = [lod_path(), "build", "statue.ply", "-o", output]
+                done = subprocess.run(words, cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(told, done.stderr)
+            self.assertIn("report could not be", done.stderr)
+        self.assertIn("x.glb", self.files())
 
 
 class Streams(Scratch):

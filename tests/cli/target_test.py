@@ -31,6 +31,12 @@ class Targets(Scratch):
         for wanted in (10000, 777, 50):
             self.assertLessEqual(self.json("simplify", "statue.ply", "-o", "x.ply", "--triangles", str(wanted))["triangles"], wanted)
 
+    def test_a_ratio_means_the_same_count_everywhere(self):
+        for ratio in ("0.12348", "0.01999", "33.333%"):  # 2,469.6 and 399.8 of 20,000: nearer to the even count above
+            built = self.json("build", "statue.ply", "-o", "x.glb", "--ratio", ratio, "--samples", "1000")["levels"][1]
+            alone = self.json("simplify", "statue.ply", "-o", "x.ply", "--ratio", ratio, "--samples", "1000")
+            self.assertEqual(built["triangles"], alone["triangles"], ratio)
+
     def test_border_is_kept_on_request(self):
         self.lod("sample", "terrain", "--triangles", "5000", "-o", "t.ply")
         before = self.json("info", "t.ply")["boundary_edges"]

@@ -1,9 +1,9 @@
-// Wall time of phases.
+// Wall time of phases, for reports; it never enters a result.
 #pragma once
 
 #include <chrono>
 
-namespace lodestone::app {
+namespace lodestone {
 
 class Stopwatch {
  public:
@@ -22,4 +22,4 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now(), last_ = start_;
 };
 
-}  // namespace lodestone::app
+}  // namespace lodestone
