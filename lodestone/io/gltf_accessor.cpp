@@ -239,8 +239,23 @@ Result<Accessor> find_accessor(const Document::Data& data, std::size_t index, Bu
   return out;
 }
 
+namespace {
+
+// What is stored as it is wanted, without gaps and choice, is copied as a whole.
+template <class Out>
+bool copy_plain(const Accessor& a, ComponentType wanted, std::span<const std::uint32_t> ids, std::size_t count,
+                Out* out, std::size_t out_components) {
+  const std::size_t bytes = out_components * sizeof(Out);
+  if (a.type != wanted || a.components != out_components || a.stride != bytes || !ids.empty()) return false;
+  std::memcpy(out, a.data, count * bytes);
+  return true;
+}
+
+}  // namespace
+
 void gather(const Accessor& accessor, std::span<const std::uint32_t> ids, std::size_t count, float* out,
             std::size_t out_components, float missing, const Task& task) {
+  if (copy_plain(accessor, ComponentType::float32, ids, count, out, out_components)) return;
   with_type(accessor.type, [&](auto* null) {
     using T = std::remove_pointer_t<decltype(null)>;
     gather_elements(accessor, ids, count, out, out_components, missing, task,
@@ -250,6 +265,7 @@ void gather(const Accessor& accessor, std::span<const std::uint32_t> ids, std::s
 
 void gather_bits(const Accessor& accessor, std::span<const std::uint32_t> ids, std::size_t count, std::uint32_t* out,
                  std::size_t out_components, const Task& task) {
+  if (copy_plain(accessor, ComponentType::uint32, ids, count, out, out_components)) return;
   with_type(accessor.type, [&](auto* null) {
     using T = std::remove_pointer_t<decltype(null)>;
     gather_elements(accessor, ids, count, out, out_components, std::uint32_t{0}, task, [&](const std::byte* at) {

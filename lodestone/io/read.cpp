@@ -128,6 +128,7 @@ Result<Model> read_model(const std::filesystem::path& path, Task task) {
   Result<Model> model = read_by(find_format(extension), path, task);
   if (!model) return model;
   model->files.insert(model->files.begin(), path);
+  if (!is_foreign_extension(extension)) return model;  // our own readers have looked already
   if (const Result<void> ok = validate(*model); !ok) {
     Error error = ok.error();
     error.where = error.where.empty() ? path.string() : path.string() + ": " + error.where;
