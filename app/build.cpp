@@ -37,7 +37,7 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   Stopwatch watch;
   BuildReport report;
   report.input = job.input.string();
-  Result<Model> model = read_input(job.input, console, task.part(0.1, "reading"));
+  Result<Model> model = read_input(job.input, console, task.part(0.1, "reading"), {.levels = false});
   if (!model) return fail(model.error());
   const Result<void> kept = io::check_replaced(*model, job.output, planned_levels(plan));
   if (!kept) return fail(kept.error());

@@ -225,7 +225,7 @@ Result<Model> read_foreign(const fs::path& path, Task task) {
   if (report.failed) return fail(std::move(report.error));
   if (!report.done || outcome->status != 0) return reader_failed(path, *outcome, limits);
 
-  Result<Model> model = io::read_model(glb, task);
+  Result<Model> model = io::read_model(glb, {}, task);
   if (!model) return model;
   model->files = {path};
   model->meters_per_unit = report.meters_per_unit;

@@ -16,14 +16,14 @@
 namespace lodestone::app {
 namespace fs = std::filesystem;
 
-Result<Model> read_input(const fs::path& path, const Console& console, Task task) {
+Result<Model> read_input(const fs::path& path, const Console& console, Task task, const io::ReadOptions& options) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
     return fail(ErrorCode::bad_argument, "is a directory, but one file is wanted here", path.string(),
                 "name a file in it");
   }
-  Result<Model> model =
-      io::is_foreign_extension(path.extension().string()) ? read_foreign(path, task) : io::read_model(path, task);
+  Result<Model> model = io::is_foreign_extension(path.extension().string()) ? read_foreign(path, task)
+                                                                            : io::read_model(path, options, task);
   if (!model) return model;
   for (const std::string& warning : model->warnings) console.note(fmt::format("{}: {}", path.string(), warning));
   return model;

@@ -122,7 +122,7 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
   }
 
   Stopwatch watch;
-  Result<Model> model = read_input(input, console, console.task().part(0.15, "reading"));
+  Result<Model> model = read_input(input, console, console.task().part(0.15, "reading"), {.levels = false});
   if (!model) return fail(model.error());
   if (const Result<void> kept = io::check_replaced(*model, report.output); !kept) return fail(kept.error());
   apply_unit(*model, plan->lengths);

@@ -98,10 +98,14 @@ inline Budget unfold_budget(std::uint64_t file_bytes) { return {file_bytes * kUn
 /// The error of a budget that is used up; `what` unfolds.
 tl::unexpected<Error> unfolds_too_far(const Document::Data& data, std::string_view what, const std::string& where);
 
-/// Container, JSON, buffers, images, views. `folder` empty: no other files may be named.
+/// Container, JSON, buffers, images, views. `path` empty: no other files may be named. `levels` false: drop_levels().
 Result<std::unique_ptr<Document::Data>> load_document(std::string bytes, std::string name,
-                                                      const std::filesystem::path& path,
+                                                      const std::filesystem::path& path, bool levels,
                                                       std::vector<std::string>& warnings, const Task& task);
+
+/// Takes out MSFT_lod with the nodes that it names, their meshes and what only these use, as far as they are the last
+/// of their kinds (as our writer leaves them): the indices of all others stay.
+void drop_levels(Json& json);
 
 /// "file.glb: accessor 3"
 std::string place(const Document::Data& data, std::string_view what, std::size_t index);

@@ -267,7 +267,7 @@ Result<void> load_views(Loader& loader) {
 }  // namespace
 
 Result<std::unique_ptr<Document::Data>> load_document(std::string bytes, std::string name,
-                                                      const std::filesystem::path& path,
+                                                      const std::filesystem::path& path, bool levels,
                                                       std::vector<std::string>& warnings, const Task& task) {
   auto data = std::make_unique<Document::Data>();
   data->name = std::move(name);
@@ -287,6 +287,7 @@ Result<std::unique_ptr<Document::Data>> load_document(std::string bytes, std::st
   if (!json) return fail(json.error());
   data->json = std::move(*json);
   if (const auto good = check_asset(*data); !good) return fail(good.error());
+  if (!levels) drop_levels(data->json);
   if (const auto good = load_buffers(loader); !good) return fail(good.error());
   if (const auto good = load_images(loader); !good) return fail(good.error());
   if (const auto good = load_views(loader); !good) return fail(good.error());

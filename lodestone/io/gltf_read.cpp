@@ -61,12 +61,13 @@ Result<void> read_meshes(const Document::Data& data, Model& model, Budget& budge
   return {};
 }
 
-Result<Model> read_document(std::string bytes, std::string name, const std::filesystem::path& path, const Task& task) {
+Result<Model> read_document(std::string bytes, std::string name, const std::filesystem::path& path,
+                            const ReadOptions& options, const Task& task) {
   Model model;
   model.meters_per_unit = 1;
   model.uv_origin_top = true;
   Result<std::unique_ptr<Document::Data>> loaded =
-      load_document(std::move(bytes), std::move(name), path, model.warnings, task.part(0.3));
+      load_document(std::move(bytes), std::move(name), path, options.levels, model.warnings, task.part(0.3));
   if (!loaded) return fail(loaded.error());
   Document::Data& data = **loaded;
   model.files = data.files;
@@ -132,17 +133,17 @@ tl::unexpected<Error> no_memory(const std::string& name) {
 
 Result<Model> read_gltf_bytes(std::string bytes, std::string name, Task task) {
   try {
-    return read_document(std::move(bytes), name, {}, task);
+    return read_document(std::move(bytes), name, {}, {}, task);
   } catch (const std::bad_alloc&) {
     return no_memory(name);
   }
 }
 
-Result<Model> read_gltf(const std::filesystem::path& path, Task task) {
+Result<Model> read_gltf(const std::filesystem::path& path, const ReadOptions& options, Task task) {
   try {
     Result<std::string> bytes = read_file(path);
     if (!bytes) return fail(bytes.error());
-    return read_document(std::move(*bytes), path.string(), path, task);
+    return read_document(std::move(*bytes), path.string(), path, options, task);
   } catch (const std::bad_alloc&) {
     return no_memory(path.string());
   }

@@ -7,6 +7,7 @@
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
 #include "lodestone/core/model.h"
+#include "lodestone/io/read.h"
 
 namespace lodestone::io {
 
@@ -18,7 +19,7 @@ namespace lodestone::io {
 /// (Model::uv_origin_top). Memory: the file, the meshes, and one mesh more while it is welded.
 /// Errors: cannot_read, bad_format (naming accessor, buffer view, primitive or node), unsupported (glTF 1, an extension
 /// that this build lacks), empty (no triangle drawn), out_of_memory, cancelled.
-Result<Model> read_gltf(const std::filesystem::path& path, Task task = {});
+Result<Model> read_gltf(const std::filesystem::path& path, const ReadOptions& options = {}, Task task = {});
 
 /// The same from bytes in memory; `name` stands in errors. Names of other files in it are refused: only a GLB chunk and
 /// data URIs can hold its bytes.

@@ -22,7 +22,7 @@ namespace lodestone::io {
 
 namespace {
 
-using Reader = Result<Model> (*)(const std::filesystem::path&, Task);
+using Reader = Result<Model> (*)(const std::filesystem::path&, const ReadOptions&, Task);
 
 struct Format {
   std::string_view extension;
@@ -31,13 +31,20 @@ struct Format {
 };
 
 constexpr std::array<Format, 7> kFormats{{
-    {".ply", [](const std::filesystem::path& p, Task t) { return read_ply(p, std::move(t)); }, false},
-    {".obj", [](const std::filesystem::path& p, Task t) { return read_obj(p, std::move(t)); }, false},
-    {".stl", [](const std::filesystem::path& p, Task t) { return read_stl(p, std::move(t)); }, false},
-    {".off", [](const std::filesystem::path& p, Task t) { return read_off(p, std::move(t)); }, false},
-    {".gltf", [](const std::filesystem::path& p, Task t) { return read_gltf(p, std::move(t)); }, false},
-    {".glb", [](const std::filesystem::path& p, Task t) { return read_gltf(p, std::move(t)); }, false},
-    {".drc", [](const std::filesystem::path& p, Task t) { return read_drc(p, std::move(t)); }, true},
+    {".ply", [](const std::filesystem::path& p, const ReadOptions&, Task t) { return read_ply(p, std::move(t)); },
+     false},
+    {".obj", [](const std::filesystem::path& p, const ReadOptions&, Task t) { return read_obj(p, std::move(t)); },
+     false},
+    {".stl", [](const std::filesystem::path& p, const ReadOptions&, Task t) { return read_stl(p, std::move(t)); },
+     false},
+    {".off", [](const std::filesystem::path& p, const ReadOptions&, Task t) { return read_off(p, std::move(t)); },
+     false},
+    {".gltf",
+     [](const std::filesystem::path& p, const ReadOptions& o, Task t) { return read_gltf(p, o, std::move(t)); }, false},
+    {".glb", [](const std::filesystem::path& p, const ReadOptions& o, Task t) { return read_gltf(p, o, std::move(t)); },
+     false},
+    {".drc", [](const std::filesystem::path& p, const ReadOptions&, Task t) { return read_drc(p, std::move(t)); },
+     true},
 }};
 
 std::string lower(std::string_view text) {
@@ -72,9 +79,10 @@ std::string_view extension_by_content(std::span<const char> head) {
 
 std::string known_extensions() { return fmt::format("{}", fmt::join(readable_extensions(), " ")); }
 
-Result<Model> read_by(const Format* format, const std::filesystem::path& path, const Task& task) {
+Result<Model> read_by(const Format* format, const std::filesystem::path& path, const ReadOptions& options,
+                      const Task& task) {
   try {
-    return format != nullptr ? format->reader(path, task) : read_assimp(path, task);
+    return format != nullptr ? format->reader(path, options, task) : read_assimp(path, task);
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::out_of_memory, "needs more memory than there is", path.string(),
                 "close other programs or use a machine with more");
@@ -101,7 +109,7 @@ std::vector<std::string> readable_extensions() {
   return out;
 }
 
-Result<Model> read_model(const std::filesystem::path& path, Task task) {
+Result<Model> read_model(const std::filesystem::path& path, const ReadOptions& options, Task task) {
   const std::string extension = lower(path.extension().string());
   std::array<char, 8> head{};
   std::size_t head_size = 0;
@@ -125,7 +133,7 @@ Result<Model> read_model(const std::filesystem::path& path, Task task) {
     return fail(ErrorCode::bad_format, fmt::format("is named {} but holds {}", extension, content), path.string(),
                 fmt::format("rename it to end in {}", content));
   }
-  Result<Model> model = read_by(find_format(extension), path, task);
+  Result<Model> model = read_by(find_format(extension), path, options, task);
   if (!model) return model;
   model->files.insert(model->files.begin(), path);
   if (!is_foreign_extension(extension)) return model;  // our own readers have looked already

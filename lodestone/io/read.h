@@ -12,11 +12,17 @@
 
 namespace lodestone::io {
 
+struct ReadOptions {
+  /// Whether levels that a glTF file has of its own (MSFT_lod) are kept in its document. Without them what is written
+  /// anew has no levels of the old geometry.
+  bool levels = true;
+};
+
 /// Reads a model by its extension (any case), checked against the content: PLY, OBJ, STL, OFF, glTF, GLB, DRC and,
 /// where built in, what assimp reads. Every mesh comes out validated, welded exactly and without unused vertices. Faces
 /// with more than three corners are triangulated; non-manifold, duplicate and degenerate faces stay. Errors:
 /// cannot_read, bad_format (with place), unsupported, empty (no triangle in the file), out_of_memory, cancelled.
-Result<Model> read_model(const std::filesystem::path& path, Task task = {});
+Result<Model> read_model(const std::filesystem::path& path, const ReadOptions& options = {}, Task task = {});
 
 /// True if read_model knows the extension.
 bool is_model_extension(std::string_view extension);

@@ -317,6 +317,22 @@ TEST_F(GltfLevels, levels_of_an_earlier_run_are_replaced_and_told) {
   EXPECT_EQ(json["nodes"][0]["extensions"]["MSFT_lod"]["ids"].size(), 1U);
 }
 
+TEST_F(GltfLevels, a_rebuilt_ladder_is_the_same_file) {
+  GltfBuilder b;
+  b.json["meshes"] = {{{"primitives", {b.sheet(3, 0)}}}, {{"primitives", {b.sheet(4, 0)}}}};
+  b.json["nodes"] = {{{"mesh", 0}, {"extras", {{"mine", 1}}}}, {{"mesh", 1}}};
+  const auto bytes_of = [&] { return *read_file(folder_ / "out.glb"); };
+  written(halved(read(b), 4));
+  const std::string first = bytes_of();
+  const auto bare = read_gltf(folder_ / "out.glb", {.levels = false});
+  ASSERT_TRUE(bare);
+  EXPECT_EQ(bare->meshes.size(), 2U);
+  const Json json = written(halved(*bare, 4)).json;
+  EXPECT_TRUE(report_.warnings.empty());
+  EXPECT_EQ(json["nodes"][0]["extras"]["mine"], 1);
+  EXPECT_TRUE(bytes_of() == first);
+}
+
 TEST_F(GltfLevels, bytes_of_the_levels_add_up_and_the_coarsest_comes_first) {
   GltfBuilder b;
   b.json["meshes"] = {{{"primitives", {b.sheet(8, 0)}}}};
