@@ -178,6 +178,7 @@ void take_triangles(State& state, const Mesh& mesh, const std::vector<std::uint3
 
 Result<State> make_state(const Mesh& mesh, const EdgeCollapseOptions& options, const Task& task) {
   State state;
+  state.fold_cosine = options.fold_cosine;
   Box3f box;
   for (const Vec3f p : mesh.positions) box.add(p);
   if (box.empty()) box.add(Vec3f{});

@@ -113,6 +113,8 @@ struct State {
   std::vector<Notes> notes;
   float mean_area = 0;  ///< of the triangles, doubled
 
+  float fold_cosine = 0;  ///< EdgeCollapseOptions::fold_cosine
+
   std::span<const std::uint32_t> segment(std::uint32_t v) const {
     return {star.data() + star_first[v], star.data() + star_first[v + 1]};
   }
@@ -282,7 +284,10 @@ class Sweeper {
   void try_collapse(Candidate candidate);
   bool refresh(Candidate& candidate);
   bool link_allows(const Candidate& candidate);
-  bool flips(std::span<const Corner> corners, std::uint32_t other, Vec3f to) const;
+  bool flips(const Candidate& candidate, bool moved);
+  bool folds() const;
+  template <class Normals>
+  bool has_fold(std::span<const Corner> corners, Normals normals) const;
   bool pair_wedges(const Candidate& candidate, bool moved);
   std::uint32_t nearest_normal(std::uint32_t wedge, std::uint32_t chart) const;
   float plane_distance(const Candidate& candidate) const;
@@ -295,7 +300,7 @@ class Sweeper {
 
   State& state_;
   std::uint8_t zone_;
-  float max_cost_;
+  float max_cost_, fold_cosine_sq_;
   std::uint32_t collapse_, mark_;
   EdgeEvaluator evaluator_;
 
@@ -307,7 +312,8 @@ class Sweeper {
   // The collapse at hand.
   std::size_t shared_ = 0;  // triangles that vanish
   Star kept_, removed_;
-  std::vector<Corner> kept_memory_, removed_memory_, corners_;  // corners_: of the new vertex
+  std::vector<Corner> kept_memory_, removed_memory_, corners_;  // corners_: of the new vertex,
+  std::vector<Vec3f> normals_;                                  // whose triangles get these normals
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // wedge of removed, wedge of kept
   std::vector<std::uint32_t> kept_wedges_;
 

@@ -55,6 +55,7 @@ Sweeper::Sweeper(State& state, std::uint8_t zone, float max_cost, std::uint32_t 
     : state_(state),
       zone_(zone),
       max_cost_(max_cost),
+      fold_cosine_sq_(state.fold_cosine * state.fold_cosine),
       collapse_(first_collapse),
       mark_(first_mark),
       evaluator_(state),
@@ -156,18 +157,54 @@ bool Sweeper::link_allows(const Candidate& candidate) {
   return true;
 }
 
-bool Sweeper::flips(std::span<const Corner> corners, std::uint32_t other, Vec3f to) const {
-  for (const Corner& c : corners) {
-    if (c.a == other || c.b == other) continue;
-    const Vec3f before = state_.normals[c.triangle].n;
-    const Vec3f a = state_.positions[c.a] - to, b = state_.positions[c.b] - to, after = cross(a, b);
-    const float before_sq = length_sq(before), after_sq = length_sq(after);
-    if (before_sq == 0) continue;
-    const float d = dot(before, after);
-    if (!(d > 0 && d * d > kMinTurnCosineSq * before_sq * after_sq)) return true;
-    if (after_sq < kNeedleSineSq * length_sq(a) * length_sq(b) && after_sq < before_sq) return true;
+// The triangles around the new vertex go to corners_, their normals to normals_. True if one of them turns over or
+// becomes a needle.
+bool Sweeper::flips(const Candidate& candidate, bool moved) {
+  corners_.clear();
+  normals_.clear();
+  const Vec3f to = candidate.position;
+  const auto turns = [&](std::span<const Corner> corners, std::uint32_t other, bool moves) {
+    for (const Corner& c : corners) {
+      if (c.a == other || c.b == other) continue;
+      const Vec3f before = state_.normals[c.triangle].n;
+      corners_.push_back(c);
+      normals_.push_back(before);
+      if (!moves) continue;
+      const Vec3f a = state_.positions[c.a] - to, b = state_.positions[c.b] - to, after = cross(a, b);
+      normals_.back() = after;
+      const float before_sq = length_sq(before), after_sq = length_sq(after);
+      if (before_sq == 0) continue;
+      const float d = dot(before, after);
+      if (!(d > 0 && d * d > kMinTurnCosineSq * before_sq * after_sq)) return true;
+      if (after_sq < kNeedleSineSq * length_sq(a) * length_sq(b) && after_sq < before_sq) return true;
+    }
+    return false;
+  };
+  return turns(kept_.corners, candidate.removed, moved) || turns(removed_.corners, candidate.kept, true);
+}
+
+// True if two neighbours around a vertex face each other closer than the limit. normals(i) is that of corner i.
+template <class Normals>
+bool Sweeper::has_fold(std::span<const Corner> corners, Normals normals) const {
+  Fan fan;
+  if (!fan.load(corners)) return false;
+  for (std::uint32_t i = 0; i < corners.size(); ++i) {
+    const std::uint32_t before = fan.before(corners[i].a);
+    if (before == kNone) continue;
+    const Vec3f n = normals(i), m = normals(before);
+    const float d = dot(n, m);
+    if (d < 0 && d * d > fold_cosine_sq_ * length_sq(n) * length_sq(m)) return true;
   }
   return false;
+}
+
+// True if the collapse folds the surface (paper 001, section 3.2: no dihedral angle below a limit) where it was not.
+bool Sweeper::folds() const {
+  if (!has_fold(corners_, [&](std::size_t i) { return normals_[i]; })) return false;
+  for (const std::span<const Corner> corners : {kept_.corners, removed_.corners}) {
+    if (has_fold(corners, [&](std::size_t i) { return state_.normals[corners[i].triangle].n; })) return false;
+  }
+  return true;
 }
 
 std::uint32_t Sweeper::nearest_normal(std::uint32_t wedge, std::uint32_t chart) const {
@@ -296,12 +333,11 @@ void Sweeper::record(const Candidate& candidate, bool moved, float error) {
   steps_.push_back(step);
 }
 
-// Changes the mesh. The new vertex's triangles go to corners_.
+// Changes the mesh.
 void Sweeper::apply(const Candidate& candidate, bool moved) {
   const std::uint32_t k = candidate.kept, r = candidate.removed;
   ++collapse_;
   ++mark_;
-  corners_.clear();
   if (moved) state_.positions[k] = candidate.position;
   const auto order = static_cast<std::uint16_t>(steps_.back().order);
   const auto visit = [&](std::uint32_t u) {
@@ -309,18 +345,6 @@ void Sweeper::apply(const Candidate& candidate, bool moved) {
     if (notes.mark == mark_) return;
     notes = {mark_, collapse_, notes.merged_at, order, true};
   };
-  const auto add = [&](const Corner& c) {
-    corners_.push_back(c);
-    visit(c.a);
-    visit(c.b);
-  };
-  for (const Corner& c : kept_.corners) {
-    if (c.a == r || c.b == r) continue;
-    if (moved) {
-      state_.normals[c.triangle] = triangle_normal(state_.positions[k], state_.positions[c.a], state_.positions[c.b]);
-    }
-    add(c);
-  }
   for (const Corner& c : removed_.corners) {
     Triangle& triangle = state_.triangles[c.triangle];
     if (c.a == k || c.b == k) {
@@ -335,8 +359,12 @@ void Sweeper::apply(const Candidate& candidate, bool moved) {
       std::uint32_t& wedge = state_.wedges[c.triangle][corner];
       wedge = std::find_if(pairs_.begin(), pairs_.end(), [&](const auto& p) { return p.first == wedge; })->second;
     }
-    state_.normals[c.triangle] = triangle_normal(state_.positions[k], state_.positions[c.a], state_.positions[c.b]);
-    add(c);
+  }
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    visit(corners_[i].a);
+    visit(corners_[i].b);
+    const float l = length(normals_[i]);
+    state_.normals[corners_[i].triangle] = {normals_[i], l > 0 ? 1 / l : 0};
   }
   state_.next[state_.last[k]] = r;
   state_.last[k] = state_.last[r];
@@ -371,8 +399,7 @@ void Sweeper::try_collapse(Candidate candidate) {
   kept_ = gather(state_, k, kept_memory_);
   if (kept_.corners.size() > kMaxValence || !link_allows(candidate)) return;
   const bool moved = state_.classes[k] == state_.classes[r];
-  if (flips(removed_.corners, k, candidate.position)) return;
-  if (moved && flips(kept_.corners, r, candidate.position)) return;
+  if (flips(candidate, moved) || folds()) return;
   pairs_.clear();
   kept_wedges_.clear();
   if (!state_.wedges.empty() && !pair_wedges(candidate, moved)) return;

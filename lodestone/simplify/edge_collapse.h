@@ -24,6 +24,9 @@ struct EdgeCollapseOptions {
   /// Linear map from mesh space to the space where costs and errors are judged: a mesh that is drawn stretched must be
   /// simplified as it is seen. Its translation is ignored; a singular one counts as identity.
   Mat4d metric;
+  /// No collapse may leave two triangles at an edge whose dihedral angle is below the angle of this cosine where there
+  /// was none (threshold beta of paper 001, section 3.2); 1 = any fold is allowed. 10 degrees.
+  float fold_cosine = 0.98481F;
   bool record_log = false;  ///< fill EdgeCollapseResult::log
 };
 

@@ -87,6 +87,8 @@ def compare_errors(t, path, out, level):
     # Polygons are fanned by the referee and cut properly by us: so against level 0 of the written file.
     d = t.judge("distance", out, out, "--level-a", 0, "--level-b", k, "--samples", 100000)
     floor = 1e-7 * d["diagonal"]  # below this, rounding decides
+    if abs(level["mean_error"] - d["mean"]) > 0.03 * d["mean"] + floor:  # where few spots make the mean, chance has a say
+        d = t.judge("distance", out, out, "--level-a", 0, "--level-b", k, "--samples", 1000000)
     if abs(level["mean_error"] - d["mean"]) > 0.03 * d["mean"] + floor:
         t.complain(f"{path.name} level {k}: mean {level['mean_error']:.6g}, the referee {d['mean']:.6g}")
     if level["error"] < 0.97 * d["max"] - floor:
