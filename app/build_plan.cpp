@@ -6,6 +6,7 @@
 #include <map>
 #include <system_error>
 
+#include "app/influence.h"
 #include "app/input.h"
 #include "app/text.h"
 #include "lodestone/base/units.h"
@@ -52,7 +53,9 @@ Result<BuildPlan> build_plan(const Arguments& arguments) {
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
   if (!distance) return fail(distance.error());
   plan.distance = *distance;
-  plan.keep_border = arguments.has("--keep-border");
+  Result<chain::Influence> influence = influence_of(arguments);
+  if (!influence) return fail(influence.error());
+  plan.influence = std::move(*influence);
   plan.compression = compression_of(arguments);
   return plan;
 }
@@ -68,7 +71,7 @@ Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& 
   if (plan.levels > 0) options.levels = plan.levels;
   options.ratios = plan.ratios;
   options.triangles = plan.triangles;
-  options.keep_border = plan.keep_border;
+  options.influence = plan.influence;
   options.distance = plan.distance;
   if (!plan.ratios.empty()) {
     std::vector<std::string> shares;

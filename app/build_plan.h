@@ -19,7 +19,7 @@ struct BuildPlan {
   double pixels = 1;
   measure::View view;
   LengthRules lengths;
-  bool keep_border = false;
+  chain::Influence influence;
   measure::DistanceOptions distance;
   io::Compression compression = io::Compression::none;
 };

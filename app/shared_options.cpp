@@ -104,10 +104,6 @@ OptionGroup length_group() {
   return group;
 }
 
-OptionGroup method_group() {
-  return {"Method", {{"--keep-border", "", "", "", "", "open borders stay exactly as they are", {}, Completion::none}}};
-}
-
 OptionGroup measuring_group(std::uint64_t samples) {
   return {"Measuring",
           {{"--samples",

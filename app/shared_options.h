@@ -19,7 +19,6 @@ OptionGroup view_group();           ///< --height, --fov
 OptionGroup single_target_group();  ///< --ratio, --triangles, --error (simplify)
 OptionGroup length_group();         ///< --unit, --absolute
 OptionGroup unit_group();           ///< --unit
-OptionGroup method_group();         ///< --keep-border
 OptionGroup measuring_group(std::uint64_t samples);  ///< --samples, --seed
 OptionGroup output_group(bool compress);             ///< -o, --compress, --json
 OptionGroup result_group();                          ///< --json alone

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/influence.h"
 #include "app/input.h"
 #include "app/json.h"
 #include "app/shared_options.h"
@@ -20,7 +21,7 @@ struct SimplifyPlan {
   std::vector<std::size_t> triangles;
   std::vector<LengthArgument> error;
   LengthRules lengths;
-  bool keep_border = false;
+  chain::Influence influence;
   measure::DistanceOptions distance;
 };
 
@@ -55,7 +56,9 @@ Result<SimplifyPlan> plan_of(const Arguments& arguments) {
     if (!error) return fail(error.error());
     plan.error = std::move(*error);
   }
-  plan.keep_border = arguments.has("--keep-border");
+  Result<chain::Influence> influence = influence_of(arguments);
+  if (!influence) return fail(influence.error());
+  plan.influence = std::move(*influence);
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
   if (!distance) return fail(distance.error());
   plan.distance = *distance;
@@ -65,7 +68,7 @@ Result<SimplifyPlan> plan_of(const Arguments& arguments) {
 Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const Model& model, std::size_t triangles,
                                                 const Console& console) {
   chain::SimplifyModelOptions options;
-  options.keep_border = plan.keep_border;
+  options.influence = plan.influence;
   options.distance = plan.distance;
   if (!plan.ratio.empty()) {
     console.note(fmt::format("keeping {} of {} triangles", percent(plan.ratio[0]), with_separators(triangles)));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/influence.h"
 #include "app/shared_options.h"
 #include "app/verbs.h"
 

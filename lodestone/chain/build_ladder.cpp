@@ -242,7 +242,7 @@ Result<LadderResult> build_ladder(Model original, const LadderOptions& options, 
   const Model& model = result.ladder.original;
   const Stopwatch collapsing;
   const Result<CollapsePlan> plan =
-      CollapsePlan::create(model, smallest, options.keep_border, task.part(0.4, "collapsing"));
+      CollapsePlan::create(model, smallest, options.influence, task.part(0.4, "collapsing"));
   if (!plan) return fail(plan.error());
   result.simplify_seconds = collapsing.total();
   const Stopwatch preparing;
@@ -267,7 +267,7 @@ Result<SimplifyModelResult> simplify_model(const Model& original, const Simplify
   if (const Result<void> ok = check_drawn(original); !ok) return fail(ok.error());
   const Stopwatch collapsing;
   const Result<CollapsePlan> plan = CollapsePlan::create(original, by_count ? options.target_triangles : 1,
-                                                         options.keep_border, task.part(0.5, "collapsing"));
+                                                         options.influence, task.part(0.5, "collapsing"));
   if (!plan) return fail(plan.error());
   SimplifyModelResult result;
   result.simplify_seconds = collapsing.total();

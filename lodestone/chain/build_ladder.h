@@ -8,6 +8,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/chain/influence.h"
 #include "lodestone/core/level.h"
 #include "lodestone/measure/distance.h"
 #include "lodestone/measure/screen.h"
@@ -23,7 +24,7 @@ struct LadderOptions {
   std::vector<std::size_t> triangles;  ///< drawn triangles, one a coarser level, falling
   std::vector<double> errors;          ///< measured maximum allowed, model units, one a coarser level, rising:
                                        ///< the coarsest mesh found within it, by bisection over one run's log
-  bool keep_border = false;            ///< open borders stay as they are
+  Influence influence;                 ///< where the model matters more, what stays
   measure::DistanceOptions distance;   ///< samples and seed of the measurement
 };
 
@@ -47,7 +48,7 @@ Result<LadderResult> build_ladder(Model original, const LadderOptions& options =
 struct SimplifyModelOptions {
   std::size_t target_triangles = 0;  ///< drawn triangles; 0 = no count target
   double max_error = 0;              ///< measured maximum, model units; 0 = no error target
-  bool keep_border = false;
+  Influence influence;
   measure::DistanceOptions distance;
 };
 

@@ -54,7 +54,10 @@ void add(simplify::LockCounts& sum, const simplify::LockCounts& more) {
 
 }  // namespace
 
-Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t smallest, bool keep_border, Task task) {
+Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t smallest, const Influence& influence,
+                                          Task task) {
+  Result<std::vector<VertexInfluence>> influences = vertex_influences(original, influence);
+  if (!influences) return fail(influences.error());
   CollapsePlan plan;
   plan.original_ = &original;
   const std::vector<std::uint32_t> uses = instance_counts(original);
@@ -68,7 +71,9 @@ Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t sma
     if (uses[m] == 0 || mesh.triangles.empty()) continue;
     simplify::EdgeCollapseOptions options;
     options.target_triangles = one_mesh ? std::max<std::size_t>(1, smallest) : 1;
-    options.keep_border = keep_border;
+    options.keep_border = influence.keep_border;
+    options.weights = std::move((*influences)[m].weights);
+    options.locked = std::move((*influences)[m].locked);
     options.metric = placings[m];
     options.record_log = true;
     const double share = static_cast<double>(mesh.triangles.size() * uses[m]) / static_cast<double>(all);

@@ -8,6 +8,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/chain/influence.h"
 #include "lodestone/core/collapse_log.h"
 #include "lodestone/core/model.h"
 #include "lodestone/simplify/edge_collapse.h"
@@ -18,7 +19,8 @@ class CollapsePlan {
  public:
   /// Collapses every drawn mesh as far as `smallest` drawn triangles may need (1 = as far as it goes). `original` must
   /// outlive the plan. Errors: empty, cancelled.
-  static Result<CollapsePlan> create(const Model& original, std::size_t smallest, bool keep_border, Task task);
+  static Result<CollapsePlan> create(const Model& original, std::size_t smallest, const Influence& influence,
+                                     Task task);
 
   /// Number of merged collapses.
   std::size_t size() const { return mesh_of_step_.size(); }

@@ -124,7 +124,7 @@ void EdgeEvaluator::add(std::uint32_t v, const Spoke& spoke) {
   }
   const std::uint32_t kept = cv < cw ? w : v, removed = cv < cw ? v : w;  // the higher class stays
   const Placement p = place_at(state_.quadrics[kept], state_.quadrics[removed]);
-  out_.push_back({kept, removed, p.position, p.cost, 0});
+  out_.push_back({kept, removed, p.position, p.cost * state_.weight_of(kept, removed), 0});
 }
 
 void EdgeEvaluator::add_edge(std::uint32_t kept, std::uint32_t removed, std::span<const Corner> corners_of_removed) {
@@ -175,7 +175,7 @@ void EdgeEvaluator::flush() {
   for (std::size_t i = 0; i < waiting_; ++i) {
     Candidate& candidate = out_[place_[i]];
     candidate.position = {x[i], y[i], z[i]};
-    candidate.cost = p.cost[i];
+    candidate.cost = p.cost[i] * state_.weight_of(candidate.kept, candidate.removed);
   }
   waiting_ = 0;
 }

@@ -209,11 +209,13 @@ void compact(State& state) {
     state.positions[next] = state.positions[v];
     state.classes[next] = state.classes[v];
     state.original[next] = state.original[v];
+    if (!state.weights.empty()) state.weights[next] = state.weights[v];
     ++next;
   }
   state.positions.resize(next);
   state.classes.resize(next);
   state.original.resize(next);
+  if (!state.weights.empty()) state.weights.resize(next);
   std::size_t kept = 0;
   for (std::size_t t = 0; t < state.triangles.size(); ++t) {
     const Triangle& c = state.triangles[t];

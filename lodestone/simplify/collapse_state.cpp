@@ -197,6 +197,9 @@ Result<State> make_state(const Mesh& mesh, const EdgeCollapseOptions& options, c
       state.positions[i] = to_float(state.metric.direction(to_double(mesh.positions[v]) - state.center) * inverse);
     }
   });
+  for (std::size_t i = 0; i < n && !options.weights.empty(); ++i) {
+    state.weights.push_back(options.weights[state.original[i]]);
+  }
   take_wedges(state, mesh, task);
   take_triangles(state, mesh, place, task);
   classify_vertices(state, options, task);

@@ -1,6 +1,7 @@
 // The working mesh of an edge-collapse run: flat arrays, compacted after every pass.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -90,6 +91,7 @@ struct State {
   // their lowest vertices, so that neighbours are near in memory. A triangle that has vanished names kNone.
   std::vector<Vec3f> positions;
   std::vector<VertexClass> classes;
+  std::vector<float> weights;           ///< EdgeCollapseOptions::weights; empty = 1
   std::vector<std::uint32_t> original;  ///< vertex of the input mesh
   std::vector<Triangle> triangles;      ///< vertices
   std::vector<TriangleNormal> normals;  ///< of the triangles, zero for vanished ones; one more at the end, zero
@@ -115,6 +117,9 @@ struct State {
 
   float fold_cosine = 0;  ///< EdgeCollapseOptions::fold_cosine
 
+  float weight_of(std::uint32_t v, std::uint32_t w) const {
+    return weights.empty() ? 1.0F : std::max(weights[v], weights[w]);
+  }
   std::span<const std::uint32_t> segment(std::uint32_t v) const {
     return {star.data() + star_first[v], star.data() + star_first[v + 1]};
   }

@@ -366,6 +366,7 @@ void Sweeper::apply(const Candidate& candidate, bool moved) {
     const float l = length(normals_[i]);
     state_.normals[corners_[i].triangle] = {normals_[i], l > 0 ? 1 / l : 0};
   }
+  if (!state_.weights.empty()) state_.weights[k] = std::max(state_.weights[k], state_.weights[r]);
   state_.next[state_.last[k]] = r;
   state_.last[k] = state_.last[r];
   state_.notes[r].merged_at = kNone;
@@ -404,7 +405,7 @@ void Sweeper::try_collapse(Candidate candidate) {
   kept_wedges_.clear();
   if (!state_.wedges.empty() && !pair_wedges(candidate, moved)) return;
   const float tip = tip_height(candidate);
-  if (!is_possible(kTipWeight * state_.mean_area * tip * tip, max_cost_)) return;
+  if (!is_possible(kTipWeight * state_.mean_area * tip * tip * state_.weight_of(k, r), max_cost_)) return;
   record(candidate, moved, std::max(tip, plane_distance(candidate)));
   apply(candidate, moved);
   add_new_edges(k);

@@ -47,6 +47,12 @@ Result<void> check(const Mesh& mesh, const EdgeCollapseOptions& options) {
   if (!options.locked.empty() && options.locked.size() != mesh.vertex_count()) {
     return bad("the list of locked vertices has another length than the mesh's vertices", "give one entry a vertex");
   }
+  if (!options.weights.empty() && options.weights.size() != mesh.vertex_count()) {
+    return bad("the list of weights has another length than the mesh's vertices", "give one entry a vertex");
+  }
+  const bool usable =
+      std::all_of(options.weights.begin(), options.weights.end(), [](float w) { return w >= 0 && std::isfinite(w); });
+  if (!usable) return bad("a weight is negative or not finite", "use 0 or more; lock what must stay");
   return {};
 }
 

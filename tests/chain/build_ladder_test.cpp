@@ -72,7 +72,7 @@ TEST(BuildLadder, what_cannot_shrink_further_ends_early_and_says_why) {
   EXPECT_FALSE(r.shortfalls.empty());
   EXPECT_LT(r.ladder.levels.size(), 5U);
   LadderOptions options = quick();
-  options.keep_border = true;
+  options.influence.keep_border = true;
   const LadderResult bordered = built(test::grid(8), options);
   ASSERT_FALSE(bordered.shortfalls.empty());
   EXPECT_NE(bordered.shortfalls[0].reason.find("--keep-border"), std::string::npos) << bordered.shortfalls[0].reason;

@@ -233,6 +233,28 @@ TEST(EdgeCollapse, borders_and_requests_hold) {
 }
 
 // Along x = 0.5 a seam with a jump of 2 in u: no UV may end up between the charts, and the seam stays where it was.
+TEST(EdgeCollapse, weights_keep_triangles_where_they_are_wanted) {
+  const Mesh in = test::torus(96);
+  EdgeCollapseOptions options;
+  options.target_triangles = in.triangles.size() / 10;
+  options.weights.assign(in.vertex_count(), 1);
+  const auto in_half = [](const Mesh& mesh) {
+    std::size_t count = 0;
+    for (const Vec3f& p : mesh.positions) count += p.x > 0 ? 1 : 0;
+    return static_cast<double>(count) / static_cast<double>(mesh.vertex_count());
+  };
+  const auto even = collapse_edges(in, options);
+  for (std::size_t v = 0; v < in.vertex_count(); ++v) options.weights[v] = in.positions[v].x > 0 ? 100.0F : 1.0F;
+  const auto weighted = collapse_edges(in, options);
+  ASSERT_TRUE(even && weighted);
+  EXPECT_NEAR(in_half(even->mesh), 0.5, 0.05);
+  EXPECT_GT(in_half(weighted->mesh), 0.75);
+  options.weights.pop_back();
+  EXPECT_EQ(collapse_edges(in, options).error().code, ErrorCode::bad_argument);
+  options.weights.push_back(-1);
+  EXPECT_EQ(collapse_edges(in, options).error().code, ErrorCode::bad_argument);
+}
+
 TEST(EdgeCollapse, seams_collapse_along_themselves) {
   const Mesh in = test::with_uv_seam(test::grid(20, 0.1F));
   const EdgeCollapseResult out = collapse(in, 60);
