@@ -40,6 +40,13 @@ bool is_flat_shaded(const Mesh& mesh, const std::vector<float>& normals, std::ui
   return true;
 }
 
+// True if the original has its normals on the other side: the back of a sheet that shares them with the front.
+bool is_backward(const Mesh& mesh, const std::vector<float>& normals, std::uint32_t triangle) {
+  const Vec3f n = face_normal(mesh, triangle);
+  const Triangle& w = mesh.triangles[triangle];
+  return dot(normal_at(normals, w[0]) + normal_at(normals, w[1]) + normal_at(normals, w[2]), n) < 0;
+}
+
 // A copy of a wedge's tuples at the end of all streams.
 std::uint32_t add_wedge(Mesh& mesh, std::uint32_t from) {
   if (mesh.wedge_vertex.empty()) {
@@ -97,6 +104,7 @@ void repair_corner_normals(const Mesh& original, const std::vector<std::uint32_t
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Vec3f n = face_normal(mesh, t);
     if (n == Vec3f{}) continue;
+    if (is_backward(original, *original_normals, origin[t])) continue;
     const bool flat = is_flat_shaded(original, *original_normals, origin[t]);
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3f now = normal_at(*float_stream(mesh, Semantic::normal, 3), mesh.triangles[t][k]);

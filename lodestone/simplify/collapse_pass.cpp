@@ -224,6 +224,7 @@ void compact(State& state) {
     state.normals[kept] = state.normals[t];
     if (!state.wedges.empty()) state.wedges[kept] = state.wedges[t];
     if (!state.groups.empty()) state.groups[kept] = state.groups[t];
+    if (!state.has_back.empty()) state.has_back[kept] = state.has_back[t];
     ++kept;
   }
   state.triangles.resize(kept);
@@ -231,6 +232,10 @@ void compact(State& state) {
   state.normals.back() = {};
   if (!state.wedges.empty()) state.wedges.resize(kept);
   if (!state.groups.empty()) state.groups.resize(kept);
+  if (!state.has_back.empty()) {
+    state.has_back.resize(kept);
+    state.backs = static_cast<std::size_t>(std::count(state.has_back.begin(), state.has_back.end(), 1));
+  }
 }
 
 }  // namespace

@@ -136,6 +136,34 @@ void mark_doubles(const std::vector<Triangle>& triangles, TriangleOrder& order, 
   });
 }
 
+// Sheets modelled with a face on either side would be non-manifold everywhere. Where both sides use the same wedges,
+// one stands for both: the later one is marked here with its partner, kNone for all others.
+std::vector<std::uint32_t> find_backs(const Mesh& mesh, const std::vector<Triangle>& triangles,
+                                      const TriangleOrder& order, const Task& task) {
+  std::vector<std::uint32_t> front_of(triangles.size(), kNone);
+  const auto sorted = [](Triangle t) {
+    std::sort(t.begin(), t.end());
+    return t;
+  };
+  const auto group = [&](std::uint32_t t) { return mesh.face_group.empty() ? 0 : mesh.face_group[t]; };
+  parallel_for(order.first.size() - 2, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const std::size_t last = order.first[v + 1];
+      if (last - order.first[v] > kMaxValence) continue;
+      for (std::size_t i = order.first[v]; i < last; ++i) {
+        const std::uint32_t back = order.triangle[i];
+        for (std::size_t j = order.first[v]; j < last && back != kNone; ++j) {
+          const std::uint32_t front = order.triangle[j];
+          if (front == kNone || front >= back || front_of[front] != kNone) continue;
+          if (sorted(triangles[front]) != sorted(triangles[back]) || group(front) != group(back)) continue;
+          if (sorted(mesh.triangles[front]) == sorted(mesh.triangles[back])) front_of[back] = front;
+        }
+      }
+    }
+  });
+  return front_of;
+}
+
 // The triangles that take part, by their lowest vertices, so that those of a star are near each other.
 void take_triangles(State& state, const Mesh& mesh, const std::vector<std::uint32_t>& place, const Task& task) {
   std::vector<Triangle> renamed(mesh.triangles.size());
@@ -147,6 +175,7 @@ void take_triangles(State& state, const Mesh& mesh, const std::vector<std::uint3
   });
   TriangleOrder order = sort_triangles(renamed, mesh.vertex_count());
   mark_doubles(renamed, order, task);
+  const std::vector<std::uint32_t> front_of = find_backs(mesh, renamed, order, task);
   std::vector<std::uint32_t>& kept = order.triangle;
   kept.resize(order.first[mesh.vertex_count()]);
   std::erase(kept, kNone);
@@ -156,6 +185,16 @@ void take_triangles(State& state, const Mesh& mesh, const std::vector<std::uint3
     for (std::uint32_t t = 0; t < taken.size(); ++t) {
       if (taken[t] == 0) state.dropped.push_back(t);
     }
+  }
+  const auto is_back = [&](std::uint32_t t) { return front_of[t] != kNone; };
+  state.backs = static_cast<std::size_t>(std::count_if(kept.begin(), kept.end(), is_back));
+  if (state.backs > 0) {
+    std::vector<std::uint8_t> has_back(renamed.size(), 0);
+    for (const std::uint32_t front : front_of) {
+      if (front != kNone) has_back[front] = 1;
+    }
+    std::erase_if(kept, is_back);
+    for (const std::uint32_t t : kept) state.has_back.push_back(has_back[t]);
   }
   const std::size_t n = kept.size();
   const bool knows_wedges = !mesh.wedge_vertex.empty() || !mesh.attributes.empty();

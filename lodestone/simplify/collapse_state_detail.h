@@ -97,6 +97,10 @@ struct State {
   std::vector<TriangleNormal> normals;  ///< of the triangles, zero for vanished ones; one more at the end, zero
   std::vector<Triangle> wedges;         ///< wedges of the input mesh; empty when the run need not know them
   std::vector<std::uint32_t> groups;    ///< face group of each triangle; empty when there is one
+  /// Triangles that stand for their back, too: an input triangle on the same wedges turned the other way, which follows
+  /// wherever this one goes. Empty when there is none.
+  std::vector<std::uint8_t> has_back;
+  std::size_t backs = 0;
 
   // About the input's wedges; empty as above.
   std::vector<std::uint32_t> chart;  ///< class of each wedge with normals and tangents left out: a change is a seam

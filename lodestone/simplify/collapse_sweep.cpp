@@ -322,6 +322,10 @@ void Sweeper::record(const Candidate& candidate, bool moved, float error) {
   step.first_wedge = static_cast<std::uint32_t>(merges_.size());
   step.wedge_count = static_cast<std::uint32_t>(merge_wedges(candidate, moved));
   step.faces = static_cast<std::uint32_t>(shared_);
+  for (const Corner& c : removed_.corners) {
+    const bool vanishes = c.a == candidate.kept || c.b == candidate.kept;
+    if (vanishes && !state_.has_back.empty()) step.faces += state_.has_back[c.triangle];
+  }
   step.moved = moved;
   // What this collapse builds on has left its place around here.
   step.order = bin_of(candidate.cost);

@@ -65,14 +65,15 @@ struct Run {
 // either.
 Run run_passes(State& state, const EdgeCollapseOptions& options, const Task& task) {
   Run run;
-  const double start = static_cast<double>(state.triangles.size());
+  const auto left = [&] { return state.triangles.size() + state.backs; };
+  const double start = static_cast<double>(left());
   double reported = 0;
   double share = kShare;
   const auto error_limit = static_cast<float>(options.max_error / state.scale);
-  while (state.triangles.size() > options.target_triangles && !task.cancelled()) {
+  while (left() > options.target_triangles && !task.cancelled()) {
     const std::size_t vertices = state.positions.size(), before = run.steps.size();
     const std::size_t collapses = detail::run_pass(state, share, run.steps, run.merges, task);
-    const double done = 1 - static_cast<double>(state.triangles.size()) / std::max(1.0, start);
+    const double done = 1 - static_cast<double>(left()) / std::max(1.0, start);
     task.advance(std::max(0.0, done - reported));
     reported = std::max(reported, done);
     const bool over = std::any_of(run.steps.begin() + static_cast<std::ptrdiff_t>(before), run.steps.end(),

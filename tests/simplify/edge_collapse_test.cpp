@@ -233,6 +233,23 @@ TEST(EdgeCollapse, borders_and_requests_hold) {
 }
 
 // Along x = 0.5 a seam with a jump of 2 in u: no UV may end up between the charts, and the seam stays where it was.
+TEST(EdgeCollapse, sheets_with_a_face_on_either_side_collapse_with_both) {
+  Mesh in = test::torus(48);
+  const std::size_t one_side = in.triangles.size();
+  for (std::size_t t = 0; t < one_side; ++t) {
+    const Triangle v = in.triangles[t];
+    in.triangles.push_back({v[0], v[2], v[1]});
+  }
+  const EdgeCollapseResult out = collapse(in, one_side / 5);
+  EXPECT_EQ(out.stop, StopReason::reached_target);
+  EXPECT_LE(out.mesh.triangles.size(), one_side / 5);
+  EXPECT_GE(out.mesh.triangles.size() + 4, one_side / 5);
+  std::size_t fronts = 0;
+  for (const std::uint32_t from : out.origin) fronts += from < one_side ? 1 : 0;
+  EXPECT_EQ(2 * fronts, out.mesh.triangles.size()) << "each face has kept its back";
+  EXPECT_EQ(out.locked.non_manifold, 0U);
+}
+
 TEST(EdgeCollapse, weights_keep_triangles_where_they_are_wanted) {
   const Mesh in = test::torus(96);
   EdgeCollapseOptions options;
