@@ -56,6 +56,11 @@ Result<BuildPlan> build_plan(const Arguments& arguments) {
   Result<chain::Influence> influence = influence_of(arguments);
   if (!influence) return fail(influence.error());
   plan.influence = std::move(*influence);
+  if (arguments.has("--weld")) {
+    Result<std::vector<LengthArgument>> weld = length_list(arguments, "--weld", plan.lengths, BareLength::model_units);
+    if (!weld) return fail(weld.error());
+    plan.weld = {weld->front()};
+  }
   plan.compression = compression_of(arguments);
   return plan;
 }
@@ -83,6 +88,11 @@ Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& 
   const Result<std::vector<double>> errors = to_model_units(plan.errors, model, diagonal);
   if (!errors) return fail(errors.error());
   options.errors = *errors;
+  if (!plan.weld.empty()) {
+    const Result<std::vector<double>> weld = to_model_units(plan.weld, model, diagonal);
+    if (!weld) return fail(weld.error());
+    options.influence.weld_tolerance = weld->front();
+  }
   const Result<std::vector<double>> distances = to_model_units(plan.distances, model, diagonal);
   if (!distances) return fail(distances.error());
   for (const double distance : *distances) {

@@ -20,6 +20,7 @@ struct BuildPlan {
   measure::View view;
   LengthRules lengths;
   chain::Influence influence;
+  std::vector<LengthArgument> weld;
   measure::DistanceOptions distance;
   io::Compression compression = io::Compression::none;
 };

@@ -22,6 +22,7 @@ struct SimplifyPlan {
   std::vector<LengthArgument> error;
   LengthRules lengths;
   chain::Influence influence;
+  std::vector<LengthArgument> weld;
   measure::DistanceOptions distance;
 };
 
@@ -59,6 +60,11 @@ Result<SimplifyPlan> plan_of(const Arguments& arguments) {
   Result<chain::Influence> influence = influence_of(arguments);
   if (!influence) return fail(influence.error());
   plan.influence = std::move(*influence);
+  if (arguments.has("--weld")) {
+    Result<std::vector<LengthArgument>> weld = length_list(arguments, "--weld", plan.lengths, BareLength::model_units);
+    if (!weld) return fail(weld.error());
+    plan.weld = {weld->front()};
+  }
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
   if (!distance) return fail(distance.error());
   plan.distance = *distance;
@@ -70,6 +76,11 @@ Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const 
   chain::SimplifyModelOptions options;
   options.influence = plan.influence;
   options.distance = plan.distance;
+  if (!plan.weld.empty()) {
+    const Result<std::vector<double>> weld = to_model_units(plan.weld, model, bounds_of(model).diagonal());
+    if (!weld) return fail(weld.error());
+    options.influence.weld_tolerance = weld->front();
+  }
   if (!plan.ratio.empty()) {
     console.note(fmt::format("keeping {} of {} triangles", percent(plan.ratio[0]), with_separators(triangles)));
     options.target_triangles =

@@ -4,6 +4,8 @@
 
 #include "lodestone/base/units.h"
 #include "lodestone/chain/collapse_plan_detail.h"
+#include "lodestone/core/weld.h"
+#include "lodestone/spatial/snap.h"
 
 namespace lodestone::chain::detail {
 
@@ -45,6 +47,22 @@ std::vector<std::uint32_t> merge_order(const std::vector<CollapseLog>& logs) {
   return order;
 }
 
+// The meshes with near vertices joined. A tolerance in the scene is smaller in a mesh that is drawn larger.
+Result<std::vector<Mesh>> weld_near(const Model& model, const std::vector<Mat4d>& placings, double tolerance,
+                                    const Task& task) {
+  std::vector<Mesh> out = model.meshes;
+  for (std::size_t m = 0; m < out.size(); ++m) {
+    const double scale = placings[m].scale_bound();
+    const Result<std::size_t> moved =
+        spatial::snap_positions(out[m].positions, scale > 0 ? tolerance / scale : tolerance, task);
+    if (!moved) return fail(moved.error());
+    Result<Mesh> welded = weld_exact(std::move(out[m]), task);
+    if (!welded) return fail(welded.error());
+    out[m] = std::move(*welded);
+  }
+  return out;
+}
+
 void add(simplify::LockCounts& sum, const simplify::LockCounts& more) {
   sum.border += more.border;
   sum.seam_corner += more.seam_corner;
@@ -56,18 +74,27 @@ void add(simplify::LockCounts& sum, const simplify::LockCounts& more) {
 
 Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t smallest, const Influence& influence,
                                           Task task) {
-  Result<std::vector<VertexInfluence>> influences = vertex_influences(original, influence);
-  if (!influences) return fail(influences.error());
   CollapsePlan plan;
   plan.original_ = &original;
   const std::vector<std::uint32_t> uses = instance_counts(original);
   const std::size_t all = std::max<std::size_t>(1, drawn_triangles(original));
   const bool one_mesh = original.instances.size() == 1;
   const std::vector<Mat4d> placings = largest_placings(original);
+  Model working;  // what the influences are about
+  working.instances = original.instances;
+  if (influence.weld_tolerance > 0) {
+    Result<std::vector<Mesh>> welded = weld_near(original, placings, influence.weld_tolerance, task);
+    if (!welded) return fail(welded.error());
+    working.meshes = std::move(*welded);
+  }
+  Result<std::vector<VertexInfluence>> influences =
+      vertex_influences(influence.weld_tolerance > 0 ? working : original, influence);
+  if (!influences) return fail(influences.error());
+  plan.welded_ = std::move(working.meshes);
   plan.logs_.resize(original.meshes.size());
   std::size_t drawn = 0;
   for (std::size_t m = 0; m < original.meshes.size(); ++m) {
-    const Mesh& mesh = original.meshes[m];
+    const Mesh& mesh = plan.mesh(m);
     if (uses[m] == 0 || mesh.triangles.empty()) continue;
     simplify::EdgeCollapseOptions options;
     options.target_triangles = one_mesh ? std::max<std::size_t>(1, smallest) : 1;
@@ -111,12 +138,11 @@ Result<Model> CollapsePlan::model_after(std::size_t count, Task task) const {
   model.uv_origin_top = original_->uv_origin_top;
   const double share = 1.0 / static_cast<double>(std::max<std::size_t>(1, logs_.size()));
   for (std::size_t m = 0; m < logs_.size(); ++m) {
-    const Mesh& mesh = original_->meshes[m];
     if (logs_[m].start_triangles == 0) {  // not drawn: as it was
-      model.meshes.push_back(mesh);
+      model.meshes.push_back(original_->meshes[m]);
       continue;
     }
-    Result<ReplayResult> replayed = replay(mesh, logs_[m], counts[m], task.part(share));
+    Result<ReplayResult> replayed = replay(mesh(m), logs_[m], counts[m], task.part(share));
     if (!replayed) return fail(replayed.error());
     model.meshes.push_back(std::move(replayed->mesh));
   }
@@ -128,8 +154,9 @@ std::string CollapsePlan::why_it_ends() const {
   const auto tell = [&](std::size_t count, const char* text) {
     if (count > 0) causes.push_back(fmt::format("{} {}", with_separators(count), text));
   };
-  tell(locked_.seam_corner, "where seams, borders or materials meet or end (weld or re-unwrap the model to free them)");
-  tell(locked_.non_manifold, "non-manifold (split the model into clean pieces to free them)");
+  tell(locked_.seam_corner,
+       "where seams, borders or materials meet or end (--weld, or unwrap the model anew, to free them)");
+  tell(locked_.non_manifold, "non-manifold (--weld may close cracks; else split the model into clean pieces)");
   tell(locked_.border, "on open borders (leave --keep-border off to free them)");
   tell(locked_.by_request, "locked on request");
   if (causes.empty()) return "no collapse is left that keeps the surface's topology and folds nothing";

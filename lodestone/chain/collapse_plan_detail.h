@@ -36,7 +36,10 @@ class CollapsePlan {
   std::string why_it_ends() const;
 
  private:
+  const Mesh& mesh(std::size_t m) const { return welded_.empty() ? original_->meshes[m] : welded_[m]; }
+
   const Model* original_ = nullptr;
+  std::vector<Mesh> welded_;                 // the meshes that the logs are about, where they are not the original's
   std::vector<CollapseLog> logs_;            // one a mesh; empty for a mesh that is not drawn
   std::vector<std::uint32_t> mesh_of_step_;  // whose next collapse each merged step is
   std::vector<std::size_t> drawn_after_;     // size() + 1 entries, never rising

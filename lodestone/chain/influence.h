@@ -1,4 +1,4 @@
-// Where a model matters more: importance and locks, from spheres in the scene and from an attribute.
+// What users tell edge collapse of a model: where it matters more, what stays, what counts as one.
 #pragma once
 
 #include <string>
@@ -21,6 +21,7 @@ struct Influence {
   std::vector<InfluenceSphere> spheres;
   std::string weight_attribute;  ///< name of a stream of one component whose values are weights; empty = none
   bool keep_border = false;      ///< open borders stay as they are
+  double weld_tolerance = 0;  ///< model units: vertices nearer than this are one in coarser levels; 0 = only equal ones
 
   bool weighs() const { return !spheres.empty() || !weight_attribute.empty(); }
 };

@@ -163,5 +163,29 @@ TEST(ScreenCoverage, one_row_an_instance_falling_and_ending_in_zero) {
   EXPECT_EQ(rows[0].back(), 0);
 }
 
+TEST(SimplifyModel, welding_by_tolerance_lets_cracked_sheets_collapse_together) {
+  // Each triangle has corners of its own, off by a little: nothing could collapse.
+  const Mesh whole = test::torus(32);
+  Mesh cracked;
+  for (std::size_t t = 0; t < whole.triangles.size(); ++t) {
+    const auto first = static_cast<std::uint32_t>(cracked.positions.size());
+    for (const std::uint32_t v : whole.vertices_of(t)) {
+      cracked.positions.push_back(whole.positions[v] + Vec3f{1e-5F * static_cast<float>(t % 7), 0, 0});
+    }
+    cracked.triangles.push_back({first, first + 1, first + 2});
+  }
+  SimplifyModelOptions options;
+  options.target_triangles = whole.triangles.size() / 4;
+  options.distance.samples = 2000;
+  const auto apart = simplify_model(make_model(cracked), options);
+  ASSERT_TRUE(apart);
+  EXPECT_FALSE(apart->shortfall.empty());
+  options.influence.weld_tolerance = 1e-3;
+  const auto joined = simplify_model(make_model(cracked), options);
+  ASSERT_TRUE(joined);
+  EXPECT_TRUE(joined->shortfall.empty()) << joined->shortfall;
+  EXPECT_LE(joined->level.triangles, options.target_triangles);
+}
+
 }  // namespace
 }  // namespace lodestone::chain
