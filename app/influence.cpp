@@ -105,7 +105,7 @@ OptionGroup method_group() {
             "FILE",
             "",
             "",
-            "spheres that matter more: lines of X Y Z RADIUS WEIGHT, or … lock",
+            "spheres that matter more: lines of X Y Z RADIUS WEIGHT (or lock)",
             {},
             Completion::file}}};
 }
