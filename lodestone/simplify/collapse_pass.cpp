@@ -177,10 +177,8 @@ void sweep_rest(State& state, float max_cost, std::vector<Sweeper>& sweepers, co
 // All steps by their place in the order, ranges in turn where it is the same.
 void append_steps(const std::vector<Sweeper>& sweepers, std::vector<Step>& steps, std::vector<WedgeMerge>& merges) {
   std::vector<std::size_t> start(kBins + 1, 0);
-  std::size_t total_merges = merges.size();
   for (const Sweeper& sweeper : sweepers) {
     for (const Step& step : sweeper.steps()) ++start[step.order + 1];
-    total_merges += sweeper.merges().size();
   }
   for (std::size_t b = 0; b < kBins; ++b) start[b + 1] += start[b];
   struct Place {
