@@ -95,6 +95,8 @@ void Sweeper::run(const Task& task) {
   }
   queue_ = {};  // what is kept until all have swept is the record alone
   queue_next_ = bin_head_ = bin_tail_ = {};
+  steps_.shrink_to_fit();
+  merges_.shrink_to_fit();
 }
 
 // Brings a candidate up to date when a star around it has changed. False = not now: dropped, or back in the queue.

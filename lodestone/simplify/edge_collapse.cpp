@@ -65,6 +65,7 @@ struct Run {
 // either.
 Run run_passes(State& state, const EdgeCollapseOptions& options, const Task& task) {
   Run run;
+  run.steps.reserve(state.positions.size());  // what is not used is never touched, and so costs nothing
   const auto left = [&] { return state.triangles.size() + state.backs; };
   const double start = static_cast<double>(left());
   double reported = 0;
@@ -158,6 +159,17 @@ LockCounts count_locks(const State& state) {
   return counts;
 }
 
+// What the record needs no more: the most of the memory of a run, kept at the size that it began with.
+void release_mesh(State& state) {
+  state.positions = {};
+  state.triangles = state.wedges = {};
+  state.normals = {};
+  state.quadrics = {};
+  state.notes = {};
+  state.classes = {};
+  state.star = state.star_first = state.next = state.last = state.groups = state.original = state.chart = {};
+}
+
 }  // namespace
 
 Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOptions& options, Task task) {
@@ -169,6 +181,7 @@ Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOp
   if (task.cancelled()) return cancelled_error("edge collapse");
   EdgeCollapseResult result;
   result.locked = count_locks(*state);
+  release_mesh(*state);
   CollapseLog log = make_log(mesh, *state, std::move(run));
   const Cut cut = find_cut(log, options);
   result.stop = cut.stop;
