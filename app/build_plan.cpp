@@ -53,14 +53,9 @@ Result<BuildPlan> build_plan(const Arguments& arguments) {
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
   if (!distance) return fail(distance.error());
   plan.distance = *distance;
-  Result<chain::Influence> influence = influence_of(arguments);
+  Result<InfluencePlan> influence = influence_of(arguments, plan.lengths);
   if (!influence) return fail(influence.error());
   plan.influence = std::move(*influence);
-  if (arguments.has("--weld")) {
-    Result<std::vector<LengthArgument>> weld = length_list(arguments, "--weld", plan.lengths, BareLength::model_units);
-    if (!weld) return fail(weld.error());
-    plan.weld = {weld->front()};
-  }
   plan.compression = compression_of(arguments);
   return plan;
 }
@@ -76,7 +71,9 @@ Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& 
   if (plan.levels > 0) options.levels = plan.levels;
   options.ratios = plan.ratios;
   options.triangles = plan.triangles;
-  options.influence = plan.influence;
+  Result<chain::Influence> influence = plan.influence.for_model(model);
+  if (!influence) return fail(influence.error());
+  options.influence = std::move(*influence);
   options.distance = plan.distance;
   if (!plan.ratios.empty()) {
     std::vector<std::string> shares;
@@ -88,11 +85,6 @@ Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& 
   const Result<std::vector<double>> errors = to_model_units(plan.errors, model, diagonal);
   if (!errors) return fail(errors.error());
   options.errors = *errors;
-  if (!plan.weld.empty()) {
-    const Result<std::vector<double>> weld = to_model_units(plan.weld, model, diagonal);
-    if (!weld) return fail(weld.error());
-    options.influence.weld_tolerance = weld->front();
-  }
   const Result<std::vector<double>> distances = to_model_units(plan.distances, model, diagonal);
   if (!distances) return fail(distances.error());
   for (const double distance : *distances) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/influence.h"
 #include "app/shared_options.h"
 #include "lodestone/chain/build_ladder.h"
 
@@ -19,8 +20,7 @@ struct BuildPlan {
   double pixels = 1;
   measure::View view;
   LengthRules lengths;
-  chain::Influence influence;
-  std::vector<LengthArgument> weld;
+  InfluencePlan influence;
   measure::DistanceOptions distance;
   io::Compression compression = io::Compression::none;
 };

@@ -110,19 +110,35 @@ OptionGroup method_group() {
             Completion::file}}};
 }
 
-Result<chain::Influence> influence_of(const Arguments& arguments) {
-  chain::Influence influence;
-  influence.keep_border = arguments.has("--keep-border");
-  influence.weight_attribute = arguments.text("--weight-by");
+Result<InfluencePlan> influence_of(const Arguments& arguments, const LengthRules& lengths) {
+  InfluencePlan plan;
+  plan.influence.keep_border = arguments.has("--keep-border");
+  plan.influence.weight_attribute = arguments.text("--weight-by");
+  std::vector<chain::InfluenceSphere>& spheres = plan.influence.spheres;
   if (arguments.has("--lock")) {
-    if (const Result<void> ok = read_lock(arguments.text("--lock"), influence.spheres); !ok) return fail(ok.error());
+    if (const Result<void> ok = read_lock(arguments.text("--lock"), spheres); !ok) return fail(ok.error());
   }
   if (arguments.has("--weights")) {
-    if (const Result<void> ok = read_weights(arguments.text("--weights"), influence.spheres); !ok) {
-      return fail(ok.error());
-    }
+    if (const Result<void> ok = read_weights(arguments.text("--weights"), spheres); !ok) return fail(ok.error());
   }
-  return influence;
+  if (arguments.has("--weld")) {
+    const Result<std::vector<LengthArgument>> weld = length_list(arguments, "--weld", lengths, BareLength::model_units);
+    if (!weld) return fail(weld.error());
+    if (weld->size() != 1) {
+      return fail(ErrorCode::bad_argument, "--weld takes one length", {}, "such as --weld 1mm");
+    }
+    plan.weld = weld->front();
+  }
+  return plan;
+}
+
+Result<chain::Influence> InfluencePlan::for_model(const Model& model) const {
+  chain::Influence out = influence;
+  if (!weld) return out;
+  const Result<std::vector<double>> tolerance = to_model_units({*weld}, model, bounds_of(model).diagonal());
+  if (!tolerance) return fail(tolerance.error());
+  out.weld_tolerance = tolerance->front();
+  return out;
 }
 
 }  // namespace lodestone::app

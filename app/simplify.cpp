@@ -21,8 +21,7 @@ struct SimplifyPlan {
   std::vector<std::size_t> triangles;
   std::vector<LengthArgument> error;
   LengthRules lengths;
-  chain::Influence influence;
-  std::vector<LengthArgument> weld;
+  InfluencePlan influence;
   measure::DistanceOptions distance;
 };
 
@@ -57,14 +56,9 @@ Result<SimplifyPlan> plan_of(const Arguments& arguments) {
     if (!error) return fail(error.error());
     plan.error = std::move(*error);
   }
-  Result<chain::Influence> influence = influence_of(arguments);
+  Result<InfluencePlan> influence = influence_of(arguments, plan.lengths);
   if (!influence) return fail(influence.error());
   plan.influence = std::move(*influence);
-  if (arguments.has("--weld")) {
-    Result<std::vector<LengthArgument>> weld = length_list(arguments, "--weld", plan.lengths, BareLength::model_units);
-    if (!weld) return fail(weld.error());
-    plan.weld = {weld->front()};
-  }
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
   if (!distance) return fail(distance.error());
   plan.distance = *distance;
@@ -74,13 +68,10 @@ Result<SimplifyPlan> plan_of(const Arguments& arguments) {
 Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const Model& model, std::size_t triangles,
                                                 const Console& console) {
   chain::SimplifyModelOptions options;
-  options.influence = plan.influence;
+  Result<chain::Influence> influence = plan.influence.for_model(model);
+  if (!influence) return fail(influence.error());
+  options.influence = std::move(*influence);
   options.distance = plan.distance;
-  if (!plan.weld.empty()) {
-    const Result<std::vector<double>> weld = to_model_units(plan.weld, model, bounds_of(model).diagonal());
-    if (!weld) return fail(weld.error());
-    options.influence.weld_tolerance = weld->front();
-  }
   if (!plan.ratio.empty()) {
     console.note(fmt::format("keeping {} of {} triangles", percent(plan.ratio[0]), with_separators(triangles)));
     options.target_triangles =

@@ -20,6 +20,21 @@ std::size_t size_of(ComponentType type) {
   return 0;
 }
 
+double largest_of(ComponentType type) {
+  switch (type) {
+    case ComponentType::int8:
+      return 127;
+    case ComponentType::uint8:
+      return 255;
+    case ComponentType::int16:
+      return 32767;
+    case ComponentType::uint16:
+      return 65535;
+    default:
+      return 1;
+  }
+}
+
 bool is_blendable(const AttributeStream& stream) {
   return !std::holds_alternative<std::vector<std::uint32_t>>(stream.values);
 }

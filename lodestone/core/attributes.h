@@ -31,6 +31,9 @@ enum class ComponentType { int8, uint8, int16, uint16, int32, uint32, float32, f
 /// Bytes of one component.
 std::size_t size_of(ComponentType type);
 
+/// What a normalised 1 is stored as: the largest value of an integer type of 8 or 16 bits, 1 for all others.
+double largest_of(ComponentType type);
+
 /// One named stream. `values` holds `components` numbers for each wedge of the mesh:
 /// floats for float32 and all integers of 8 and 16 bits (normalised ones already divided: [0,1] or [-1,1]),
 /// doubles for float64, and 32-bit patterns for joints, categorical values and all integers of 32 bits.

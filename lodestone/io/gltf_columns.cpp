@@ -74,21 +74,6 @@ void read_tuple(const AttributeStream& stream, std::uint32_t wedge, double* out)
   }
 }
 
-double largest_of(ComponentType type) {
-  switch (type) {
-    case ComponentType::int8:
-      return 127;
-    case ComponentType::uint8:
-      return 255;
-    case ComponentType::int16:
-      return 32767;
-    case ComponentType::uint16:
-      return 65535;
-    default:
-      return 1;
-  }
-}
-
 template <class T>
 void store(char* at, double value) {
   const auto v = static_cast<T>(value);

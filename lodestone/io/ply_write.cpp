@@ -101,19 +101,6 @@ void append(std::string& out, T value) {
   out.append(reinterpret_cast<const char*>(&value), sizeof(T));
 }
 
-double largest_of(ComponentType type) {
-  switch (type) {
-    case ComponentType::int8:
-      return 127;
-    case ComponentType::uint8:
-      return 255;
-    case ComponentType::int16:
-      return 32767;
-    default:
-      return 65535;
-  }
-}
-
 void append_integer(std::string& out, double value, ComponentType type) {
   const double most = largest_of(type);
   const bool is_signed = type == ComponentType::int8 || type == ComponentType::int16;

@@ -17,6 +17,7 @@
 #include "lodestone/io/off.h"
 #include "lodestone/io/ply.h"
 #include "lodestone/io/stl.h"
+#include "lodestone/io/text_reader_detail.h"
 
 namespace lodestone::io {
 
@@ -46,14 +47,6 @@ constexpr std::array<Format, 7> kFormats{{
     {".drc", [](const std::filesystem::path& p, const ReadOptions&, Task t) { return read_drc(p, std::move(t)); },
      true},
 }};
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return out;
-}
 
 const Format* find_format(std::string_view extension) {
   const auto found =
@@ -92,12 +85,12 @@ Result<Model> read_by(const Format* format, const std::filesystem::path& path, c
 }  // namespace
 
 bool is_model_extension(std::string_view extension) {
-  const std::string e = lower(extension);
+  const std::string e = lower_case(extension);
   return find_format(e) != nullptr || is_assimp_extension(e);
 }
 
 bool is_foreign_extension(std::string_view extension) {
-  const std::string e = lower(extension);
+  const std::string e = lower_case(extension);
   const Format* format = find_format(e);
   return format != nullptr ? format->foreign : is_assimp_extension(e);
 }
@@ -110,7 +103,7 @@ std::vector<std::string> readable_extensions() {
 }
 
 Result<Model> read_model(const std::filesystem::path& path, const ReadOptions& options, Task task) {
-  const std::string extension = lower(path.extension().string());
+  const std::string extension = lower_case(path.extension().string());
   std::array<char, 8> head{};
   std::size_t head_size = 0;
   {
