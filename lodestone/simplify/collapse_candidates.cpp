@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "lodestone/simplify/collapse_attributes_detail.h"
 #include "lodestone/simplify/collapse_solve_detail.h"
 #include "lodestone/simplify/collapse_state_detail.h"
 
@@ -47,6 +48,21 @@ void add_lines(const State& state, std::uint32_t v, Quadric& q) {
   }
 }
 
+Quadric quadric_of(const State& state, std::uint32_t v) {
+  // Diagonal (xx, yy, zz) and the rest (xy, yz, zx) of the sum of n n^T / |n|, and the sum of n; fourth lanes are idle.
+  Float4 diagonal{}, rest{}, sum{};
+  state.each_in_star(v, [&](std::uint32_t t) {
+    const Float4 n = load(state.normals[t]), unit = n * __builtin_shufflevector(n, n, 3, 3, 3, 3);
+    diagonal += unit * n;
+    rest += unit * __builtin_shufflevector(n, n, 1, 2, 0, 3);
+    sum += n;
+  });
+  Quadric q{diagonal[0],       rest[0], rest[2], diagonal[1], rest[1], diagonal[2], {sum[0], sum[1], sum[2]},
+            state.positions[v]};
+  if (state.classes[v] == VertexClass::feature) add_lines(state, v, q);
+  return q;
+}
+
 // Rows a, b, c, d become columns.
 void transpose(Float4& a, Float4& b, Float4& c, Float4& d) {
   const Float4 ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5), ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
@@ -77,19 +93,9 @@ QuadricLanes load_four(const State& state, const std::array<std::uint32_t, 4>& v
 
 }  // namespace
 
-Quadric quadric_of(const State& state, std::uint32_t v) {
-  // Diagonal (xx, yy, zz) and the rest (xy, yz, zx) of the sum of n n^T / |n|, and the sum of n; fourth lanes are idle.
-  Float4 diagonal{}, rest{}, sum{};
-  state.each_in_star(v, [&](std::uint32_t t) {
-    const Float4 n = load(state.normals[t]), unit = n * __builtin_shufflevector(n, n, 3, 3, 3, 3);
-    diagonal += unit * n;
-    rest += unit * __builtin_shufflevector(n, n, 1, 2, 0, 3);
-    sum += n;
-  });
-  Quadric q{diagonal[0],       rest[0], rest[2], diagonal[1], rest[1], diagonal[2], {sum[0], sum[1], sum[2]},
-            state.positions[v]};
-  if (state.classes[v] == VertexClass::feature) add_lines(state, v, q);
-  return q;
+void renew_quadric(State& state, std::uint32_t v) {
+  state.quadrics[v] = quadric_of(state, v);
+  if (state.attributes.blocks > 0) renew_attribute_quadrics(state, v);
 }
 
 void EdgeEvaluator::collect_spokes(std::span<const Corner> corners) {
@@ -124,7 +130,13 @@ void EdgeEvaluator::add(std::uint32_t v, const Spoke& spoke) {
   }
   const std::uint32_t kept = cv < cw ? w : v, removed = cv < cw ? v : w;  // the higher class stays
   const Placement p = place_at(state_.quadrics[kept], state_.quadrics[removed]);
-  out_.push_back({kept, removed, p.position, p.cost * state_.weight_of(kept, removed), 0});
+  Candidate candidate{kept, removed, p.position, p.cost, 0};
+  if (state_.attributes.blocks > 0) {
+    const std::uint32_t second = spoke.count > 1 ? spoke.triangles[1] : kNone;
+    candidate.cost += attributes_of(candidate, false, spoke.triangles[0], second);
+  }
+  candidate.cost *= state_.weight_of(kept, removed);
+  out_.push_back(candidate);
 }
 
 void EdgeEvaluator::add_edge(std::uint32_t kept, std::uint32_t removed, std::span<const Corner> corners_of_removed) {
@@ -145,6 +157,14 @@ void EdgeEvaluator::add_free(std::uint32_t v, std::uint32_t w, std::uint32_t fir
   place_[waiting_] = out_.size();
   out_.push_back({v, w, {}, 0, 0});
   if (++waiting_ == 4) flush();
+}
+
+float EdgeEvaluator::attributes_of(const Candidate& candidate, bool moved, std::uint32_t first,
+                                   std::uint32_t second) const {
+  const std::uint32_t both[2] = {first, second};
+  const std::size_t count = second < state_.triangles.size() ? 2 : 1;
+  return edge_attribute_cost(state_, candidate.kept, candidate.removed, moved, candidate.position,
+                             std::span(both).first(count));
 }
 
 void EdgeEvaluator::flush() {
@@ -175,7 +195,9 @@ void EdgeEvaluator::flush() {
   for (std::size_t i = 0; i < waiting_; ++i) {
     Candidate& candidate = out_[place_[i]];
     candidate.position = {x[i], y[i], z[i]};
-    candidate.cost = p.cost[i] * state_.weight_of(candidate.kept, candidate.removed);
+    candidate.cost = p.cost[i];
+    if (state_.attributes.blocks > 0) candidate.cost += attributes_of(candidate, true, first_[i], second_[i]);
+    candidate.cost *= state_.weight_of(candidate.kept, candidate.removed);
   }
   waiting_ = 0;
 }

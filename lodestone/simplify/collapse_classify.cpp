@@ -9,12 +9,6 @@ namespace lodestone::simplify::detail {
 
 namespace {
 
-std::uint32_t wedge_at(const State& state, std::uint32_t triangle, std::uint32_t vertex) {
-  const Triangle& v = state.triangles[triangle];
-  const Triangle& w = state.wedges[triangle];
-  return v[0] == vertex ? w[0] : v[1] == vertex ? w[1] : w[2];
-}
-
 // One closed fan of triangles that turn the same way, without a feature edge: what most vertices are.
 bool is_plain(const State& state, std::uint32_t v, std::span<const Corner> corners) {
   const bool plain_surface = state.wedges.empty() && state.groups.empty();

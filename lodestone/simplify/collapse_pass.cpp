@@ -32,7 +32,7 @@ void prepare(State& state, const Task& task) {
   state.quadrics.resize(n);
   parallel_for(n, 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
-      state.quadrics[v] = quadric_of(state, v);
+      renew_quadric(state, v);
       const bool inner = is_inner(v, 0, [&](auto look) {
         for (const std::uint32_t entry : state.segment(v)) {
           for (const std::uint32_t u : state.triangles[entry >> 2]) look(u);
@@ -113,7 +113,7 @@ void renew_quadrics(State& state, const Task& task) {
   parallel_for(state.positions.size(), 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
       if (!state.notes[v].stale || (state.zone[v] & kHeavy) != 0 || state.notes[v].merged_at == kNone) continue;
-      state.quadrics[v] = quadric_of(state, v);
+      renew_quadric(state, v);
       state.notes[v].stale = false;
     }
   });

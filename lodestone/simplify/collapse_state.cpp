@@ -6,6 +6,7 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/core/weld.h"
+#include "lodestone/simplify/collapse_attributes_detail.h"
 
 namespace lodestone::simplify::detail {
 
@@ -241,6 +242,7 @@ Result<State> make_state(const Mesh& mesh, const EdgeCollapseOptions& options, c
   }
   take_wedges(state, mesh, task);
   take_triangles(state, mesh, place, task);
+  if (!state.wedges.empty()) take_attributes(state, mesh, options.attribute_weights);
   classify_vertices(state, options, task);
   if (task.cancelled()) return cancelled_error("edge collapse");
   return state;

@@ -81,6 +81,16 @@ struct Corner {
   std::uint32_t a, b, triangle;
 };
 
+/// The attributes that have a say in what collapses, see collapse_attributes_detail.h. All by wedge of the input.
+struct AttributeField {
+  std::size_t blocks = 0;        ///< groups of four numbers a wedge; 0 = none has a say
+  std::size_t uv_sets = 0;       ///< these come first, two numbers each
+  std::vector<Float4> values;    ///< as they are at any moment, in lengths of the working frame
+  std::vector<Float4> quadrics;  ///< `stride` a wedge: xx xy xz yy, yz zz area 0, then x, y, z of area times gradient
+
+  std::size_t stride() const { return blocks == 0 ? 0 : 2 + 3 * blocks; }
+};
+
 struct State {
   // The frame: working position = metric * (position - center) / scale, scale a power of two near the mean edge length.
   Vec3d center;
@@ -105,6 +115,7 @@ struct State {
   // About the input's wedges; empty as above.
   std::vector<std::uint32_t> chart;  ///< class of each wedge with normals and tangents left out: a change is a seam
   std::vector<Vec3f> wedge_normals;  ///< of the input; empty when it has none
+  AttributeField attributes;
 
   std::vector<std::uint32_t> dropped;  ///< input triangles that take no part
   std::vector<LockCause> causes;       ///< one a vertex of the input
@@ -191,12 +202,20 @@ class Fan {
   std::size_t size_ = 0;
 };
 
+/// The wedge of a triangle at one of its vertices.
+inline std::uint32_t wedge_at(const State& state, std::uint32_t triangle, std::uint32_t vertex) {
+  const Triangle& v = state.triangles[triangle];
+  const Triangle& w = state.wedges[triangle];
+  return v[0] == vertex ? w[0] : v[1] == vertex ? w[1] : w[2];
+}
+
 /// True if the edge is a feature: not exactly two triangles, or these differ in group or in a chart at one end.
 /// `triangles` are those with both a and b.
 bool is_feature_edge(const State& state, std::uint32_t a, std::uint32_t b, std::span<const std::uint32_t> triangles);
 
-/// The quadric of a vertex's star as it is. Feature vertices get the lines of their feature edges, too.
-Quadric quadric_of(const State& state, std::uint32_t v);
+/// Makes the quadric of a vertex anew from its star as it is, and those of its wedges. Feature vertices get the lines
+/// of their feature edges, too.
+void renew_quadric(State& state, std::uint32_t v);
 
 /// An edge that may collapse, and how. 28 bytes.
 struct Candidate {
@@ -247,6 +266,7 @@ class EdgeEvaluator {
   void add(std::uint32_t v, const Spoke& spoke);
   void add_free(std::uint32_t v, std::uint32_t w, std::uint32_t first, std::uint32_t second);
   void flush();
+  float attributes_of(const Candidate& candidate, bool moved, std::uint32_t first, std::uint32_t second) const;
 
   const State& state_;
   std::vector<Spoke> spokes_;
@@ -302,7 +322,11 @@ class Sweeper {
   float plane_distance(const Candidate& candidate) const;
   float tip_height(const Candidate& candidate) const;
   void record(const Candidate& candidate, bool moved, float error);
-  std::size_t merge_wedges(const Candidate& candidate, bool moved);
+  float blend_wedges(const Candidate& candidate, bool moved);
+  void blend_by_place(const Candidate& candidate);
+  void blend_by_values(const Candidate& candidate);
+  float attribute_error(const Candidate& candidate, bool moved) const;
+  bool turns_textures(const Candidate& candidate) const;
   void apply(const Candidate& candidate, bool moved);
   void renew(std::uint32_t vertex);
   void add_new_edges(std::uint32_t kept);
@@ -324,7 +348,10 @@ class Sweeper {
   std::vector<Corner> kept_memory_, removed_memory_, corners_;  // corners_: of the new vertex,
   std::vector<Vec3f> normals_;                                  // whose triangles get these normals
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // wedge of removed, wedge of kept
+  std::size_t across_ = 0;                                      // of these, how many are across the edge's triangles
   std::vector<std::uint32_t> kept_wedges_;
+  std::vector<WedgeMerge> merging_;    // the wedges' part of the record
+  std::vector<Float4> merged_values_;  // of the kept wedges afterwards
 
   std::vector<Step> steps_;
   std::vector<WedgeMerge> merges_;

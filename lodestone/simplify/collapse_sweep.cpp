@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodestone/simplify/collapse_solve_detail.h"
 #include "lodestone/simplify/collapse_state_detail.h"
 
 namespace lodestone::simplify::detail {
@@ -209,63 +208,6 @@ bool Sweeper::folds() const {
   return true;
 }
 
-std::uint32_t Sweeper::nearest_normal(std::uint32_t wedge, std::uint32_t chart) const {
-  std::uint32_t best = kNone;
-  float best_cosine = -2;
-  for (const std::uint32_t k : kept_wedges_) {
-    if (state_.chart[k] != chart) continue;
-    const float cosine = state_.wedge_normals.empty() ? 0 : dot(state_.wedge_normals[k], state_.wedge_normals[wedge]);
-    if (cosine > best_cosine) {
-      best = k;
-      best_cosine = cosine;
-    }
-  }
-  return best;
-}
-
-// Finds for each wedge of the removed vertex the wedge of the kept one that takes over: across the edge's triangles
-// where they say it, else (normals split at the vertex, textures not) the one in the same chart whose normal is
-// nearest. False = no match.
-bool Sweeper::pair_wedges(const Candidate& candidate, bool moved) {
-  const auto wedge_of = [&](std::uint32_t triangle, std::uint32_t vertex) {
-    const Triangle& c = state_.triangles[triangle];
-    const Triangle& w = state_.wedges[triangle];
-    return c[0] == vertex ? w[0] : c[1] == vertex ? w[1] : w[2];
-  };
-  const auto find = [&](std::uint32_t wedge) {
-    return std::find_if(pairs_.begin(), pairs_.end(), [&](const auto& p) { return p.first == wedge; });
-  };
-  pairs_.clear();
-  kept_wedges_.clear();
-  for (const Corner& c : kept_.corners) {
-    const std::uint32_t w = wedge_of(c.triangle, candidate.kept);
-    if (std::find(kept_wedges_.begin(), kept_wedges_.end(), w) == kept_wedges_.end()) kept_wedges_.push_back(w);
-    if (c.a != candidate.removed && c.b != candidate.removed) continue;
-    const std::uint32_t from = wedge_of(c.triangle, candidate.removed);
-    const auto known = find(from);
-    if (known == pairs_.end()) {
-      pairs_.emplace_back(from, w);
-    } else if (state_.chart[known->second] != state_.chart[w]) {
-      return false;  // one wedge would have to become two
-    }
-  }
-  const std::size_t across = pairs_.size();
-  for (const Corner& c : removed_.corners) {
-    const std::uint32_t from = wedge_of(c.triangle, candidate.removed);
-    if (find(from) != pairs_.end()) continue;
-    const auto kin = std::find_if(pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(across),
-                                  [&](const auto& p) { return state_.chart[p.first] == state_.chart[from]; });
-    if (kin == pairs_.begin() + static_cast<std::ptrdiff_t>(across)) return false;
-    pairs_.emplace_back(from, nearest_normal(from, state_.chart[kin->second]));
-  }
-  if (!moved) return true;
-  // A vertex that moves takes all its wedges along, so each needs a partner to blend with.
-  return std::all_of(kept_wedges_.begin(), kept_wedges_.end(), [&](std::uint32_t k) {
-    return std::any_of(pairs_.begin(), pairs_.end(),
-                       [&](const auto& p) { return state_.chart[p.second] == state_.chart[k]; });
-  });
-}
-
 // How far the new position is from the planes of the triangles around, at most: a mean over areas would hide that a
 // thin part is cut.
 float Sweeper::plane_distance(const Candidate& candidate) const {
@@ -293,28 +235,7 @@ float Sweeper::tip_height(const Candidate& candidate) const {
   return most;
 }
 
-// Appends the wedges' part of the record; returns its length.
-std::size_t Sweeper::merge_wedges(const Candidate& candidate, bool moved) {
-  const std::size_t first = merges_.size();
-  const Vec3f from = state_.positions[candidate.kept], edge = state_.positions[candidate.removed] - from;
-  const float l = length_sq(edge);
-  const float t = moved && l > 0 ? std::clamp(dot(candidate.position - from, edge) / l, 0.0F, 1.0F) : 0.0F;
-  for (const auto& [removed, kept] : pairs_) merges_.push_back({kept, removed, 0, true});
-  if (t > 0) {
-    for (const std::uint32_t wedge : kept_wedges_) {
-      const auto same = std::find_if(pairs_.begin(), pairs_.end(), [&](const auto& p) { return p.second == wedge; });
-      if (same != pairs_.end()) {
-        merges_[first + static_cast<std::size_t>(same - pairs_.begin())].blend = t;
-        continue;
-      }
-      const auto kin = std::find_if(pairs_.begin(), pairs_.end(),
-                                    [&](const auto& p) { return state_.chart[p.second] == state_.chart[wedge]; });
-      merges_.push_back({wedge, kin->first, t, false});
-    }
-  }
-  return merges_.size() - first;
-}
-
+// Appends to the record.
 void Sweeper::record(const Candidate& candidate, bool moved, float error) {
   Step step;
   step.kept = state_.original[candidate.kept];
@@ -322,7 +243,8 @@ void Sweeper::record(const Candidate& candidate, bool moved, float error) {
   step.position = candidate.position;
   step.error = error;
   step.first_wedge = static_cast<std::uint32_t>(merges_.size());
-  step.wedge_count = static_cast<std::uint32_t>(merge_wedges(candidate, moved));
+  step.wedge_count = static_cast<std::uint32_t>(merging_.size());
+  merges_.insert(merges_.end(), merging_.begin(), merging_.end());
   step.faces = static_cast<std::uint32_t>(shared_);
   for (const Corner& c : removed_.corners) {
     const bool vanishes = c.a == candidate.kept || c.b == candidate.kept;
@@ -345,6 +267,11 @@ void Sweeper::apply(const Candidate& candidate, bool moved) {
   ++collapse_;
   ++mark_;
   if (moved) state_.positions[k] = candidate.position;
+  const std::size_t blocks = state_.attributes.blocks;
+  for (std::size_t i = 0; i < kept_wedges_.size() && blocks > 0; ++i) {
+    std::copy_n(merged_values_.begin() + static_cast<std::ptrdiff_t>(i * blocks), blocks,
+                state_.attributes.values.begin() + static_cast<std::ptrdiff_t>(kept_wedges_[i] * blocks));
+  }
   const auto order = static_cast<std::uint16_t>(steps_.back().order);
   const auto visit = [&](std::uint32_t u) {
     Notes& notes = state_.notes[u];
@@ -382,7 +309,7 @@ void Sweeper::apply(const Candidate& candidate, bool moved) {
 
 void Sweeper::renew(std::uint32_t vertex) {
   if (!state_.notes[vertex].stale || (state_.zone[vertex] & kHeavy) != 0) return;
-  state_.quadrics[vertex] = quadric_of(state_, vertex);
+  renew_quadric(state_, vertex);
   state_.notes[vertex].stale = false;
 }
 
@@ -407,12 +334,19 @@ void Sweeper::try_collapse(Candidate candidate) {
   if (kept_.corners.size() > kMaxValence || !link_allows(candidate)) return;
   const bool moved = state_.classes[k] == state_.classes[r];
   if (flips(candidate, moved) || folds()) return;
-  pairs_.clear();
-  kept_wedges_.clear();
-  if (!state_.wedges.empty() && !pair_wedges(candidate, moved)) return;
   const float tip = tip_height(candidate);
   if (!is_possible(kTipWeight * state_.mean_area * tip * tip * state_.weight_of(k, r), max_cost_)) return;
-  record(candidate, moved, std::max(tip, plane_distance(candidate)));
+  float error = std::max(tip, plane_distance(candidate));
+  if (!state_.wedges.empty()) {
+    if (!pair_wedges(candidate, moved)) return;
+    const float more = blend_wedges(candidate, moved);
+    if (state_.attributes.blocks > 0) {
+      if (!is_possible(candidate.cost + more * state_.weight_of(k, r), max_cost_)) return;
+      if (turns_textures(candidate)) return;
+      error = std::max(error, attribute_error(candidate, moved));
+    }
+  }
+  record(candidate, moved, error);
   apply(candidate, moved);
   add_new_edges(k);
 }
