@@ -207,12 +207,14 @@ void compact(State& state) {
     state.positions[next] = state.positions[v];
     state.classes[next] = state.classes[v];
     state.original[next] = state.original[v];
+    state.drift[next] = state.drift[v];
     if (!state.weights.empty()) state.weights[next] = state.weights[v];
     ++next;
   }
   state.positions.resize(next);
   state.classes.resize(next);
   state.original.resize(next);
+  state.drift.resize(next);
   if (!state.weights.empty()) state.weights.resize(next);
   std::size_t kept = 0;
   for (std::size_t t = 0; t < state.triangles.size(); ++t) {

@@ -19,6 +19,16 @@ namespace lodestone::simplify::detail {
 using Float4 = float __attribute__((vector_size(16)));
 using Int4 = int __attribute__((vector_size(16)));
 
+/// Rows a, b, c, d become columns.
+inline void transpose(Float4& a, Float4& b, Float4& c, Float4& d) {
+  const Float4 ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5), ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const Float4 cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5), cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  a = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+  c = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+  d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+}
+
 /// What a vertex may do. A *feature edge* is a border, a seam, an edge between two face groups or a non-manifold edge.
 /// The class never changes: features collapse only along themselves.
 enum class VertexClass : std::uint8_t {
@@ -53,7 +63,7 @@ struct alignas(16) Quadric {
 struct Step {
   std::uint32_t kept, removed;  ///< vertices of the input mesh
   Vec3f position;               ///< of `kept`, working frame; unused when !moved
-  float error;  ///< how far the surface has moved here, about: largest distance to the planes around, working frame
+  float error;  ///< how far the surface and its attributes are from the input here, about; working frame
   std::uint32_t first_wedge, wedge_count;
   std::uint32_t faces;
   std::uint32_t order;  ///< place in the pass's record: never below that of a step that this one builds on
@@ -101,6 +111,7 @@ struct State {
   // their lowest vertices, so that neighbours are near in memory. A triangle that has vanished names kNone.
   std::vector<Vec3f> positions;
   std::vector<VertexClass> classes;
+  std::vector<float> drift;             ///< how far the surface here is from the input, about; working frame
   std::vector<float> weights;           ///< EdgeCollapseOptions::weights; empty = 1
   std::vector<std::uint32_t> original;  ///< vertex of the input mesh
   std::vector<Triangle> triangles;      ///< vertices
@@ -284,6 +295,34 @@ inline bool is_possible(float cost, float max_cost) { return cost <= max_cost &&
 inline std::uint32_t bin_of(float cost) { return std::bit_cast<std::uint32_t>(cost) >> 20; }
 inline constexpr std::size_t kBins = 2048;
 
+/// A triangle of a fan, seen from the apex.
+struct alignas(16) Leaf {
+  Vec3f a;  ///< relative to the apex
+  float drift_a;
+  Vec3f b;
+  float drift_b;
+  Vec3f n;               ///< cross(a, b)
+  float inverse_square;  ///< of the length of n; 0 for a triangle without area
+};
+
+class FanDistance {
+ public:
+  void clear() { size_ = 0; }
+  void add(const Leaf& leaf) {
+    if (size_ == leaf_.size()) leaf_.resize(size_ + 64);
+    leaf_[size_++] = leaf;
+  }
+  /// Call once all triangles are added.
+  void pad();
+  /// Distance from q (relative to the apex) to the nearest point of the fan that is above or below a triangle, or if
+  /// there is none to the nearest of its edges, and the drift there, interpolated. At least one triangle.
+  float drift_at(Vec3f q, float apex_drift) const;
+
+ private:
+  std::vector<Leaf> leaf_;
+  std::size_t size_ = 0;
+};
+
 /// Takes the cheapest edge from its queue, collapses it and puts the edges that this changes back, until none is left
 /// that costs at most max_cost. One object a range of vertices.
 class Sweeper {
@@ -319,8 +358,7 @@ class Sweeper {
   bool has_fold(std::span<const Corner> corners, Normals normals) const;
   bool pair_wedges(const Candidate& candidate, bool moved);
   std::uint32_t nearest_normal(std::uint32_t wedge, std::uint32_t chart) const;
-  float plane_distance(const Candidate& candidate) const;
-  float tip_height(const Candidate& candidate) const;
+  float drift_after(const Candidate& candidate);
   void record(const Candidate& candidate, bool moved, float error);
   float blend_wedges(const Candidate& candidate, bool moved);
   void blend_by_place(const Candidate& candidate);
@@ -346,6 +384,7 @@ class Sweeper {
   std::size_t shared_ = 0;  // triangles that vanish
   Star kept_, removed_;
   std::vector<Corner> kept_memory_, removed_memory_, corners_;  // corners_: of the new vertex,
+  FanDistance fan_;
   std::vector<Vec3f> normals_;                                  // whose triangles get these normals
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // wedge of removed, wedge of kept
   std::size_t across_ = 0;                                      // of these, how many are across the edge's triangles

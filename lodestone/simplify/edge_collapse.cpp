@@ -162,6 +162,7 @@ LockCounts count_locks(const State& state) {
 // What the record needs no more: the most of the memory of a run, kept at the size that it began with.
 void release_mesh(State& state) {
   state.positions = {};
+  state.drift = {};
   state.triangles = state.wedges = {};
   state.normals = {};
   state.quadrics = {};
