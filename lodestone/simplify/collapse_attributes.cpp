@@ -154,10 +154,10 @@ void renew_attribute_quadrics(State& state, std::uint32_t v) {
     const Triangle& w = state.wedges[t];
     const Vec3f n = state.normals[t].n;
     const Vec3f ea = state.positions[c[i]] - p, eb = state.positions[c[j]] - p;
-    const float area = length(n);
+    const float size = length(n), area = size * std::sqrt(size);  // weighed as positions are
     // A sliver's gradient says little: it counts as if the triangle were a little thicker.
-    const float inverse = 1 / (area + 0.01F * (length_sq(ea) + length_sq(eb)) + 1e-30F);
-    const float unit = state.normals[t].inverse_length;
+    const float inverse = 1 / (size + 0.01F * (length_sq(ea) + length_sq(eb)) + 1e-30F);
+    const float unit = size > 0 ? 1 / size : 0;
     const Vec3f from_a = cross(eb, n) * (unit * inverse), from_b = cross(n, ea) * (unit * inverse);
     Float4* q = &field.quadrics[w[k] * field.stride()];
     const Float4 *s = &field.values[w[k] * blocks], *sa = &field.values[w[i] * blocks],

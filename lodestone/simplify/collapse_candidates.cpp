@@ -16,15 +16,15 @@ constexpr float kLineWeight = 4.5F;
 
 Float4 load(const TriangleNormal& t) { return *reinterpret_cast<const Float4*>(&t); }
 
-// Squared distance to the line of a feature edge, weighed by the edge's squared length.
+// Squared distance to the line of a feature edge, weighed by the edge's length cubed.
 void add_line(Quadric& q, Vec3f d) {
-  const float l = length_sq(d);
-  q.xx += kLineWeight * (l - d.x * d.x);
-  q.yy += kLineWeight * (l - d.y * d.y);
-  q.zz += kLineWeight * (l - d.z * d.z);
-  q.xy -= kLineWeight * d.x * d.y;
-  q.xz -= kLineWeight * d.x * d.z;
-  q.yz -= kLineWeight * d.y * d.z;
+  const float l = length_sq(d), weight = kLineWeight * std::sqrt(l);
+  q.xx += weight * (l - d.x * d.x);
+  q.yy += weight * (l - d.y * d.y);
+  q.zz += weight * (l - d.z * d.z);
+  q.xy -= weight * d.x * d.y;
+  q.xz -= weight * d.x * d.z;
+  q.yz -= weight * d.y * d.z;
 }
 
 void add_lines(const State& state, std::uint32_t v, Quadric& q) {
@@ -49,12 +49,13 @@ void add_lines(const State& state, std::uint32_t v, Quadric& q) {
 }
 
 Quadric quadric_of(const State& state, std::uint32_t v) {
-  // Diagonal (xx, yy, zz) and the rest (xy, yz, zx) of the sum of n n^T / |n|, and the sum of n; fourth lanes are idle.
+  // Diagonal (xx, yy, zz) and the rest (xy, yz, zx) of the sum of n n^T / sqrt(|n|), and the sum of n; fourth lanes are
+  // idle.
   Float4 diagonal{}, rest{}, sum{};
   state.each_in_star(v, [&](std::uint32_t t) {
-    const Float4 n = load(state.normals[t]), unit = n * __builtin_shufflevector(n, n, 3, 3, 3, 3);
-    diagonal += unit * n;
-    rest += unit * __builtin_shufflevector(n, n, 1, 2, 0, 3);
+    const Float4 n = load(state.normals[t]), scaled = n * __builtin_shufflevector(n, n, 3, 3, 3, 3);
+    diagonal += scaled * n;
+    rest += scaled * __builtin_shufflevector(n, n, 1, 2, 0, 3);
     sum += n;
   });
   Quadric q{diagonal[0],       rest[0], rest[2], diagonal[1], rest[1], diagonal[2], {sum[0], sum[1], sum[2]},
@@ -178,7 +179,7 @@ void EdgeEvaluator::flush() {
     for (std::size_t i = 0; i < 4; ++i) rows[i] = load(state_.normals[triangles[i]]);
     transpose(rows[0], rows[1], rows[2], rows[3]);
     terms.n[t] = {rows[0], rows[1], rows[2]};
-    terms.inverse_length[t] = rows[3];
+    terms.inverse_root[t] = rows[3];
   }
   const EdgePlacement<Float4> p = place_freely(terms);
   const Float4 x = v.f[9] + p.position.x, y = v.f[10] + p.position.y, z = v.f[11] + p.position.z;

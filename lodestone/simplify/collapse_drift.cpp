@@ -108,8 +108,9 @@ float Sweeper::drift_after(const Candidate& candidate) {
     fan_.clear();
     for (const Corner& c : corners) {
       const TriangleNormal& t = state_.normals[c.triangle];
+      const float inverse = t.inverse_root * t.inverse_root;
       fan_.add({positions[c.a] - positions[v], drift[c.a], positions[c.b] - positions[v], drift[c.b], t.n,
-                t.inverse_length * t.inverse_length});
+                inverse * inverse});
     }
     fan_.pad();
     return fan_.drift_at(candidate.position - positions[v], drift[v]);

@@ -4,6 +4,7 @@
 // it meets no other range's work. Then one sweep takes the edges that cross ranges. The record tells all by cost, a
 // step never before one that it builds on: any prefix is a mesh from which the cheapest edges are gone everywhere.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "lodestone/base/parallel.h"
@@ -43,8 +44,8 @@ void prepare(State& state, const Task& task) {
   });
 }
 
-// Twice the mean area of the triangles.
-float mean_area(const State& state, const Task& task) {
+// What a triangle of mean area weighs.
+float mean_weight(const State& state, const Task& task) {
   const double sum = parallel_reduce(
       state.triangles.size(), 1 << 15, task, 0.0,
       [&](std::size_t begin, std::size_t end) {
@@ -53,7 +54,8 @@ float mean_area(const State& state, const Task& task) {
         return part;
       },
       [](double a, double b) { return a + b; });
-  return static_cast<float>(sum / static_cast<double>(std::max<std::size_t>(1, state.triangles.size())));
+  const double mean = sum / static_cast<double>(std::max<std::size_t>(1, state.triangles.size()));
+  return static_cast<float>(mean * std::sqrt(mean));
 }
 
 // The cost below which about `share` of the edges lie, from those at every so many vertices; rounded up to a whole bin.
@@ -243,7 +245,7 @@ void compact(State& state) {
 std::size_t run_pass(State& state, double share, std::vector<Step>& steps, std::vector<WedgeMerge>& merges,
                      const Task& task) {
   prepare(state, task);
-  state.mean_area = mean_area(state, task);
+  state.mean_weight = mean_weight(state, task);
   const float max_cost = cost_limit(state, share);
   std::vector<Sweeper> sweepers;
   sweepers.reserve(2 * (state.positions.size() / kRange + 2) + 1);

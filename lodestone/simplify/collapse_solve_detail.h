@@ -22,17 +22,17 @@ struct Sym3 {
 /// Everything that the placement of an edge (v, w) depends on.
 template <class F>
 struct EdgeTerms {
-  Sym3<F> a0, a1;       ///< quadrics of v and w, each about its own vertex
-  Vec<F> g0, g1;        ///< their volume vectors
-  Vec<F> n[2];          ///< cross products of the (at most two) triangles that have both, zero where there is none
-  F inverse_length[2];  ///< of these
-  Vec<F> edge;          ///< w - v
+  Sym3<F> a0, a1;     ///< quadrics of v and w, each about its own vertex
+  Vec<F> g0, g1;      ///< their volume vectors
+  Vec<F> n[2];        ///< cross products of the (at most two) triangles that have both, zero where there is none
+  F inverse_root[2];  ///< of their lengths
+  Vec<F> edge;        ///< w - v
 };
 
 template <class F>
 struct EdgePlacement {
   Vec<F> position;  ///< relative to v
-  F cost;           ///< sum of twice the area times squared distance, over the triangles around
+  F cost;           ///< sum of squared distances times twice the area to the power of 1.5, over the triangles around
 };
 
 template <class F>
@@ -78,7 +78,7 @@ EdgePlacement<F> place_freely(const EdgeTerms<F>& in) {
   Vec<F> g{in.g0.x + in.g1.x, in.g0.y + in.g1.y, in.g0.z + in.g1.z};
   for (int t = 0; t < 2; ++t) {
     const Vec<F>& n = in.n[t];
-    const F ux = n.x * in.inverse_length[t], uy = n.y * in.inverse_length[t], uz = n.z * in.inverse_length[t];
+    const F ux = n.x * in.inverse_root[t], uy = n.y * in.inverse_root[t], uz = n.z * in.inverse_root[t];
     a0.xx -= n.x * ux;
     a0.xy -= n.x * uy;
     a0.xz -= n.x * uz;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -40,19 +41,20 @@ enum class VertexClass : std::uint8_t {
 /// Why a vertex is fixed, for LockCounts.
 enum class LockCause : std::uint8_t { none, border, seam_corner, non_manifold, by_request };
 
-/// Cross product of a triangle's sides and the inverse of its length (0 for a triangle without area).
+/// Cross product of a triangle's sides, and the inverse root of its length (0 for a triangle without area).
 struct alignas(16) TriangleNormal {
   Vec3f n;
-  float inverse_length = 0;
+  float inverse_root = 0;
 };
-inline TriangleNormal triangle_normal(Vec3f a, Vec3f b, Vec3f c) {
-  const Vec3f n = cross(b - a, c - a);
+inline TriangleNormal weighed_normal(Vec3f n) {
   const float l = length(n);
-  return {n, l > 0 ? 1 / l : 0};
+  return {n, l > 0 ? 1 / std::sqrt(l) : 0};
 }
+inline TriangleNormal triangle_normal(Vec3f a, Vec3f b, Vec3f c) { return weighed_normal(cross(b - a, c - a)); }
 
 /// Sum over a vertex's triangles about the vertex itself, where all linear terms vanish (memoryless, Lindstrom & Turk
-/// 1998). Each triangle counts n n^T / |n| with n its cross product: squared distance times twice the area. 48 bytes.
+/// 1998). Each triangle counts n n^T / sqrt(|n|), n being its cross product: squared distance times twice the area to
+/// the power of 1.5. 48 bytes.
 struct alignas(16) Quadric {
   float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
   Vec3f volume;    ///< sum of n: moving the vertex by d changes the volume by (volume . d) / 6
@@ -139,7 +141,7 @@ struct State {
   std::vector<Quadric> quadrics;
   std::vector<std::uint8_t> zone;  ///< bits of Zone
   std::vector<Notes> notes;
-  float mean_area = 0;  ///< of the triangles, doubled
+  float mean_weight = 0;  ///< what a triangle of mean area weighs: twice that area to the power of 1.5
 
   float fold_cosine = 0;  ///< EdgeCollapseOptions::fold_cosine
 

@@ -19,10 +19,8 @@ constexpr float kMinTurnCosineSq = 0.2F * 0.2F;
 // shrinks: it would be without area once positions are rounded.
 constexpr float kNeedleSineSq = 1e-6F;
 
-// The drift, squared, counts as if it were over this many mean triangles (doubled, as in costs): what drifts too far
-// waits for a pass that goes as far. Over eight meshes at 10 %, mean and maximum error: 0.5 0.8412e-4 1.52e-3, 1
-// 0.8457e-4 1.24e-3, 2 0.8614e-4 1.24e-3; without 0.838e-4 1.99e-3.
-constexpr float kDriftWeight = 1;
+// The drift, squared, costs as if it were over this many mean triangles.
+constexpr float kDriftWeight = 0.5F;
 
 // A star that has been looked through this many times its size in vain rests until the pass ends, which tidies up.
 constexpr std::size_t kMostVanished = 8;
@@ -269,8 +267,7 @@ void Sweeper::apply(const Candidate& candidate, bool moved) {
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     visit(corners_[i].a);
     visit(corners_[i].b);
-    const float l = length(normals_[i]);
-    state_.normals[corners_[i].triangle] = {normals_[i], l > 0 ? 1 / l : 0};
+    state_.normals[corners_[i].triangle] = weighed_normal(normals_[i]);
   }
   if (!state_.weights.empty()) state_.weights[k] = std::max(state_.weights[k], state_.weights[r]);
   state_.next[state_.last[k]] = r;
@@ -307,17 +304,22 @@ void Sweeper::try_collapse(Candidate candidate) {
   if (kept_.corners.size() > kMaxValence || !link_allows(candidate)) return;
   const bool moved = state_.classes[k] == state_.classes[r];
   if (flips(candidate, moved) || folds()) return;
-  const float drift = drift_after(candidate);
-  if (!is_possible(kDriftWeight * state_.mean_area * drift * drift * state_.weight_of(k, r), max_cost_)) return;
+  const float drift = drift_after(candidate), weight = state_.weight_of(k, r);
+  float cost = std::max(candidate.cost, kDriftWeight * state_.mean_weight * drift * drift * weight);
   float error = drift;
   if (!state_.wedges.empty()) {
     if (!pair_wedges(candidate, moved)) return;
-    const float more = blend_wedges(candidate, moved);
+    cost += blend_wedges(candidate, moved) * weight;
     if (state_.attributes.blocks > 0) {
-      if (!is_possible(candidate.cost + more * state_.weight_of(k, r), max_cost_)) return;
       if (turns_textures(candidate)) return;
       error = std::max(error, attribute_error(candidate, moved));
     }
+  }
+  if (bin_of(cost) > bin_) {  // dearer than its queue knew: its turn comes later
+    candidate.cost = cost;
+    candidate.stamp = collapse_;
+    if (is_possible(cost, max_cost_)) push(candidate);
+    return;
   }
   record(candidate, moved, error);
   apply(candidate, moved);
