@@ -23,6 +23,7 @@ void add_levels(BuildReport& report, const Ladder& ladder, const io::WriteReport
     LevelReport row;
     row.level = i;
     row.triangles = level.triangles;
+    row.vanished_parts = level.vanished_parts;
     row.error = level.error;
     row.switch_distance = measure::switch_distance(level.error.error, 1, view);
     row.bytes = written.level_bytes[i];
@@ -48,9 +49,11 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   report.unit = unit_name(model->meters_per_unit);
   report.warnings = model->warnings;
 
-  std::vector<std::string> notes;
-  const Result<chain::LadderOptions> options = ladder_options(plan, *model, notes);
+  std::vector<std::string> notes, warnings;
+  const Result<chain::LadderOptions> options = ladder_options(plan, *model, notes, warnings);
   if (!options) return fail(options.error());
+  report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
+  notes.insert(notes.end(), warnings.begin(), warnings.end());
   for (const std::string& note : notes) console.note(fmt::format("{}: {}", report.input, note));
   Result<chain::LadderResult> result =
       chain::build_ladder(std::move(*model), *options, task.part(0.8, "making levels"));
@@ -91,6 +94,8 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
   const std::string unit = report.unit.empty() ? "" : " (" + report.unit + ")";
   Table table;
   for (const char* title : {"level", "triangles", "share"}) table.add_column(title);
+  const bool pruned = plan.influence.influence.vanishes();
+  if (pruned) table.add_column("parts gone");
   table.add_column("error" + unit);
   table.add_column("relative");
   table.add_column("1 px from" + unit);
@@ -98,9 +103,14 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
   for (const LevelReport& level : report.levels) {
     const double share =
         static_cast<double>(level.triangles) / static_cast<double>(std::max<std::size_t>(1, report.triangles));
-    table.add_row({fmt::format("{}", level.level), with_separators(level.triangles), percent(share),
-                   short_number(level.error.error), percent(level.error.relative(level.error.error)),
-                   short_number(level.switch_distance), human_bytes(level.bytes), seconds_text(level.seconds)});
+    std::vector<std::string> row{fmt::format("{}", level.level), with_separators(level.triangles), percent(share)};
+    if (pruned) row.push_back(with_separators(level.vanished_parts));
+    for (const std::string& cell :
+         {short_number(level.error.error), percent(level.error.relative(level.error.error)),
+          short_number(level.switch_distance), human_bytes(level.bytes), seconds_text(level.seconds)}) {
+      row.push_back(cell);
+    }
+    table.add_row(std::move(row));
   }
   std::string out =
       fmt::format("{} -> {}\n{}", printable(report.input), printable(report.levels.back().file), table.text());

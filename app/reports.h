@@ -16,6 +16,7 @@ namespace lodestone::app {
 struct LevelReport {
   std::size_t level = 0;
   std::size_t triangles = 0;
+  std::size_t vanished_parts = 0;  ///< drawn pieces of the input that have nothing left here
   LevelError error;
   double switch_distance = 0;  ///< model units
   std::uint64_t bytes = 0;
@@ -39,7 +40,8 @@ struct BuildReport {
 
 struct SimplifyReport {
   std::string input, output, unit;
-  std::size_t triangles_in = 0, triangles = 0;
+  std::size_t triangles_in = 0, triangles = 0, vanished_parts = 0;
+  bool pruned = false;  ///< parts were allowed to vanish
   LevelError error;
   std::string stop_reason, shortfall;
   simplify::LockCounts locked;
