@@ -1,10 +1,12 @@
-// Steps    border vertices -> mutual nearest -> pairs that keep edges manifold, the nearest first -> { drop those that
-//          turn a triangle or share no sewn edge } until none does -> move
+// Steps    { border vertices -> mutual nearest -> pairs that keep edges manifold, the nearest first -> { drop those
+// that
+//          turn a triangle or share no sewn edge } until none does -> rename } until there is no pair -> move
 #include "lodestone/spatial/join.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <tuple>
 
@@ -20,9 +22,56 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;
 
+// Where n parts meet in a corner log2(n) rounds join them.
+constexpr int kMostRounds = 8;
+
 struct Pair {
   std::uint32_t a, b;  // a < b
   double distance_sq;
+};
+
+// The mesh as it is sewn so far: `mesh` has vertices for wedges, and each joined vertex goes by the name of the one
+// whose place it takes.
+struct Sewn {
+  Mesh mesh;
+  Parts parts;                       // of the original: nothing is ever joined to another vertex of its own part
+  std::vector<std::uint32_t> names;  // one a vertex of the original
+  std::vector<std::uint32_t> next;   // the vertices of one name, in a ring
+
+  explicit Sewn(const Mesh& original) : parts(parts_of(original)), names(original.vertex_count()) {
+    mesh.positions = original.positions;
+    mesh.triangles.resize(original.triangles.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) mesh.triangles[t] = original.vertices_of(t);
+    std::iota(names.begin(), names.end(), 0U);
+    next = names;
+  }
+
+  template <class Each>
+  bool all_of(std::uint32_t name, const Each& each) const {
+    for (std::uint32_t v = name;;) {
+      if (!each(v)) return false;
+      v = next[v];
+      if (v == name) return true;
+    }
+  }
+  bool is_single(std::uint32_t name) const { return next[name] == name; }
+  bool share_part(std::uint32_t a, std::uint32_t b) const {
+    return !all_of(a, [&](std::uint32_t x) {
+      return all_of(b, [&](std::uint32_t y) { return parts.of_vertex[x] != parts.of_vertex[y]; });
+    });
+  }
+  void join(std::uint32_t mover, std::uint32_t stayer) {
+    all_of(mover, [&](std::uint32_t v) {
+      names[v] = stayer;
+      return true;
+    });
+    std::swap(next[mover], next[stayer]);
+  }
+  void rename() {
+    for (Triangle& t : mesh.triangles) {
+      for (std::uint32_t& v : t) v = names[v];
+    }
+  }
 };
 
 // Both ends' neighbours along borders, by vertex.
@@ -53,16 +102,23 @@ Borders borders_of(const Mesh& mesh, const Task& task) {
   return borders;
 }
 
-class Joiner {
+class Round {
  public:
-  Joiner(Mesh& mesh, const std::vector<std::uint8_t>& locked, const Task& task)
-      : mesh_(mesh), locked_(locked), task_(task), borders_(borders_of(mesh, task)), stars_(vertex_triangles(mesh)) {
-    partner_.assign(mesh.vertex_count(), kNone);
+  Round(const Mesh& original, Sewn& sewn, const std::vector<std::uint8_t>& locked, const Task& task)
+      : original_(original),
+        sewn_(sewn),
+        mesh_(sewn.mesh),
+        locked_(locked),
+        task_(task),
+        borders_(borders_of(mesh_, task)),
+        stars_(vertex_triangles(mesh_)) {
+    partner_.assign(mesh_.vertex_count(), kNone);
   }
 
+  // Joins what it can and returns how many pairs.
   std::size_t run(double tolerance) {
     for (const Pair& pair : near_pairs(tolerance)) {
-      if (!keeps_edges(pair)) continue;
+      if (!stays_near(pair, tolerance) || !keeps_edges(pair)) continue;
       pairs_.push_back(pair);
       partner_[pair.a] = pair.b;
       partner_[pair.b] = pair.a;
@@ -73,33 +129,45 @@ class Joiner {
       dropped = drop([&](const Pair& pair) { return !is_sewn(pair); });
       if (drop([&](const Pair& pair) { return turns(pair); })) dropped = true;
     }
-    for (const Pair& pair : pairs_) mesh_.positions[mover(pair)] = mesh_.positions[stayer(pair)];
+    for (const Pair& pair : pairs_) sewn_.join(mover(pair), stayer(pair));
+    sewn_.rename();
     return pairs_.size();
   }
 
  private:
-  bool is_locked(std::uint32_t v) const { return !locked_.empty() && locked_[v] != 0; }
+  bool is_locked(std::uint32_t name) const {
+    return !locked_.empty() && !sewn_.all_of(name, [&](std::uint32_t v) { return locked_[v] == 0; });
+  }
   std::uint32_t mover(const Pair& pair) const { return is_locked(pair.b) ? pair.a : pair.b; }
   std::uint32_t stayer(const Pair& pair) const { return is_locked(pair.b) ? pair.b : pair.a; }
   std::uint32_t name_of(std::uint32_t v) const { return partner_[v] == kNone ? v : std::min(v, partner_[v]); }
 
-  // Each other's nearest border vertices of different parts, the nearest pairs first.
+  // Each other's nearest border vertices without a part in common, the nearest pairs first.
   std::vector<Pair> near_pairs(double tolerance) {
-    const Parts parts = parts_of(mesh_);
+    // A vertex that is joined already belongs to several parts: it makes a group of its own.
+    std::vector<std::uint32_t> group(mesh_.vertex_count(), kNone), single;
     std::vector<Vec3d> positions(mesh_.vertex_count());
     std::vector<Triangle> points;  // a tree of triangles serves for points as well
     for (std::uint32_t v = 0; v < positions.size(); ++v) {
       positions[v] = to_double(mesh_.positions[v]);
-      if (!borders_.of(v).empty() && parts.of_vertex[v] != kNone) points.push_back({v, v, v});
+      if (borders_.of(v).empty()) continue;
+      points.push_back({v, v, v});
+      group[v] = sewn_.parts.of_vertex[v];
+      if (sewn_.is_single(v)) continue;
+      group[v] = static_cast<std::uint32_t>(sewn_.parts.count + single.size());
+      single.push_back(v);
     }
     if (points.empty()) return {};
-    const PartTree tree(positions, points, parts.of_vertex, parts.count, task_);
+    const PartTree tree(positions, points, group, sewn_.parts.count + single.size(), task_);
     std::vector<NearestPart> nearest(positions.size());
     parallel_for(points.size(), kChunk, task_, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t i = begin; i < end; ++i) {
-        const std::uint32_t v = points[i][0], own = parts.of_vertex[v];
-        nearest[v] = tree.nearest(
-            positions[v], [own](std::uint32_t q) { return q != own; }, tolerance * tolerance);
+        const std::uint32_t v = points[i][0];
+        const auto is_other = [&](std::uint32_t q) {
+          if (q >= sewn_.parts.count) return !sewn_.share_part(v, single[q - sewn_.parts.count]);
+          return sewn_.all_of(v, [&](std::uint32_t x) { return sewn_.parts.of_vertex[x] != q; });
+        };
+        nearest[v] = tree.nearest(positions[v], is_other, tolerance * tolerance);
       }
     });
     std::vector<Pair> pairs;
@@ -111,6 +179,14 @@ class Joiner {
     std::sort(pairs.begin(), pairs.end(),
               [](const Pair& x, const Pair& y) { return std::tie(x.distance_sq, x.a) < std::tie(y.distance_sq, y.a); });
     return pairs;
+  }
+
+  // Nothing creeps: what moved before must not end farther away than the tolerance.
+  bool stays_near(const Pair& pair, double tolerance) const {
+    const Vec3d place = to_double(mesh_.positions[stayer(pair)]);
+    return sewn_.all_of(mover(pair), [&](std::uint32_t v) {
+      return length_sq(to_double(original_.positions[v]) - place) <= tolerance * tolerance;
+    });
   }
 
   // The triangles around a vertex: the others' corners, in their order, under the names that they have so far.
@@ -149,11 +225,12 @@ class Joiner {
     return true;
   }
 
+  // True if a border edge of each falls together with one of the other: at a vertex that is joined already, or now.
   bool is_sewn(const Pair& pair) const {
-    const auto there = borders_.of(pair.b);
-    return std::any_of(borders_.of(pair.a).begin(), borders_.of(pair.a).end(), [&](std::uint32_t v) {
-      return partner_[v] != kNone && std::find(there.begin(), there.end(), partner_[v]) != there.end();
-    });
+    const auto here = borders_.of(pair.a), there = borders_.of(pair.b);
+    const auto is_there = [&](std::uint32_t v) { return std::find(there.begin(), there.end(), v) != there.end(); };
+    return std::any_of(here.begin(), here.end(),
+                       [&](std::uint32_t v) { return is_there(v) || (partner_[v] != kNone && is_there(partner_[v])); });
   }
 
   Vec3d moved(std::uint32_t v) const {
@@ -164,9 +241,9 @@ class Joiner {
 
   bool turns(const Pair& pair) const {
     for (const std::uint32_t t : stars_.of(mover(pair))) {
-      const Triangle c = mesh_.vertices_of(t);
-      const Vec3d before = scaled_normal(to_double(mesh_.positions[c[0]]), to_double(mesh_.positions[c[1]]),
-                                         to_double(mesh_.positions[c[2]]));
+      const Triangle c = mesh_.triangles[t], o = original_.vertices_of(t);
+      const Vec3d before = scaled_normal(to_double(original_.positions[o[0]]), to_double(original_.positions[o[1]]),
+                                         to_double(original_.positions[o[2]]));
       if (before == Vec3d{}) continue;
       if (!(dot(before, scaled_normal(moved(c[0]), moved(c[1]), moved(c[2]))) > 0)) return true;
     }
@@ -182,7 +259,9 @@ class Joiner {
     return !gone.empty();
   }
 
-  Mesh& mesh_;
+  const Mesh& original_;
+  Sewn& sewn_;
+  const Mesh& mesh_;
   const std::vector<std::uint8_t>& locked_;
   const Task& task_;
   Borders borders_;
@@ -202,8 +281,16 @@ Result<std::size_t> join_parts(Mesh& mesh, double tolerance, const std::vector<s
     return fail(ErrorCode::bad_argument, "the list of locked vertices has another length than the mesh's vertices",
                 "joining", "give one entry a vertex");
   }
-  const std::size_t moved = Joiner(mesh, locked, task).run(tolerance);
+  Sewn sewn(mesh);
+  for (int round = 0; round < kMostRounds && !task.cancelled(); ++round) {
+    if (Round(mesh, sewn, locked, task).run(tolerance) == 0) break;
+  }
   if (task.cancelled()) return cancelled_error("joining");
+  std::size_t moved = 0;
+  for (std::uint32_t v = 0; v < sewn.names.size(); ++v) {
+    mesh.positions[v] = sewn.mesh.positions[sewn.names[v]];
+    moved += sewn.names[v] != v ? 1 : 0;
+  }
   return moved;
 }
 

@@ -13,8 +13,9 @@
 namespace lodestone::spatial {
 
 /// Pairs of border vertices of different parts that are each other's nearest, within `tolerance`: one of a pair takes
-/// the place of the other (the higher that of the lower, none that of `locked`, one entry a vertex). Vertices of one
-/// part are never paired. What exact welding then makes of a welded mesh has
+/// the place of the other (the higher that of the lower, none that of `locked`, one entry a vertex); in rounds, so that
+/// corners of several parts fall together. No vertex moves farther than the tolerance, and none to another of its own
+/// part. What exact welding then makes of a welded mesh has
 /// - no edge that two of the joined triangles walk the same way, so none with more triangles than two that had fewer,
 /// - no triangle that repeats another's vertices where none did before,
 /// - no triangle turned by more than 90 degrees or left without area by joining,
