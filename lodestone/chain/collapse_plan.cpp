@@ -7,6 +7,7 @@
 #include "lodestone/chain/collapse_plan_detail.h"
 #include "lodestone/chain/working_meshes_detail.h"
 #include "lodestone/core/adjacency.h"
+#include "lodestone/simplify/grow_parts.h"
 
 namespace lodestone::chain::detail {
 
@@ -225,7 +226,9 @@ Result<Mesh> CollapsePlan::mesh_after(std::size_t m, const Progress& progress, d
   }
   Result<ReplayResult> replayed = replay(mesh(m), logs_[m], progress.collapses, options, task);
   if (!replayed) return fail(replayed.error());
-  if (keep_area_) grow_parts(mesh(m), thin, area, error, placings_[m], replayed->origin, replayed->mesh);
+  if (keep_area_) {
+    simplify::grow_parts(mesh(m), thin, area, error, placings_[m], replayed->origin, replayed->mesh);
+  }
   return std::move(replayed->mesh);
 }
 

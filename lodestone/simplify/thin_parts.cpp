@@ -12,7 +12,7 @@
 #include <tuple>
 
 #include "lodestone/base/parallel.h"
-#include "lodestone/math/triangle.h"
+#include "lodestone/simplify/part_shape_detail.h"
 #include "lodestone/spatial/part_tree.h"
 
 namespace lodestone::simplify {
@@ -30,29 +30,12 @@ constexpr std::uint32_t kBoundVertices = 32;
 
 constexpr std::size_t kChunk = 1024;
 
-// Area and centroid of a part, triangle by triangle.
-struct Sum {
-  double area = 0;
-  Vec3d moment;
-  void add(Vec3d a, Vec3d b, Vec3d c) {
-    const double own = length(scaled_normal(a, b, c)) / 2;
-    area += own;
-    moment += (a + b + c) * (own / 3);
-  }
-};
-
-// How far a part's farthest vertex moves when it is enlarged to stand for an area.
-double growth_of(double area, double radius, double stands) {
-  return area > 0 && stands > area ? (std::sqrt(stands / area) - 1) * radius : 0;
-}
-
 struct Part {
   double stands = 0;     // area of its own and of the parts that it took over
   double inherited = 0;  // error of those
-  double radius = 0;     // of its farthest vertex about the centroid
-  double growth = 0;     // how far that vertex has to move
+  double growth = 0;     // how far its farthest vertex moves to have that area
   double factor = 1;     // importance
-  Vec3d center;
+  detail::PartShape shape;
   std::uint32_t heir = kNone;  // who would take over its area, as last asked
   std::uint32_t farthest = 0;  // vertex
   bool alive = false;
@@ -143,19 +126,21 @@ class Greedy {
   }
 
   void measure_parts(const ThinPartsOptions& options) {
-    std::vector<Sum> sums(parts_.size());
+    std::vector<detail::PartMeasure> measures(parts_.size());
     for (const Triangle& t : triangles_) {
-      sums[out_.parts.of_vertex[t[0]]].add(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+      measures[out_.parts.of_vertex[t[0]]].add_triangle(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
     }
     out_.area.resize(parts_.size());
     out_.stays.assign(parts_.size(), 0);
     for (std::uint32_t p = 0; p < parts_.size(); ++p) {
       Part& part = parts_[p];
-      out_.area[p] = part.stands = sums[p].area;
-      part.center = sums[p].area > 0 ? sums[p].moment / sums[p].area : positions_[vertices_of(p)[0]];
+      measures[p].end_triangles();
+      for (const std::uint32_t v : vertices_of(p)) measures[p].add_vertex(positions_[v]);
+      part.shape = measures[p].end_vertices();
+      if (!(part.shape.area > 0)) part.shape.center = positions_[vertices_of(p)[0]];
+      out_.area[p] = part.stands = part.shape.area;
       double weight = 1;
       for (const std::uint32_t v : vertices_of(p)) {
-        part.radius = std::max(part.radius, length(positions_[v] - part.center));
         if (!options.locked.empty() && options.locked[v] != 0) out_.stays[p] = 1;
         if (!options.weights.empty()) weight = std::max(weight, static_cast<double>(options.weights[v]));
       }
@@ -211,7 +196,7 @@ class Greedy {
     choose_heir(p);
     if (!keep_area_ || part.heir == kNone) return reach * part.factor;
     const Part& heir = parts_[part.heir];
-    const double growth = growth_of(out_.area[part.heir], heir.radius, heir.stands + part.stands);
+    const double growth = heir.shape.growth_for(heir.stands + part.stands);
     return std::max(reach + grown, std::max(reach, heir.inherited) + growth) * part.factor;
   }
 
@@ -225,8 +210,9 @@ class Greedy {
     if (part.heir != kNone && parts_[part.heir].alive) return;
     const auto may_grow = [&](std::uint32_t q) { return q != p && out_.stays[q] == 0 && out_.area[q] > 0; };
     const double limit = kKind * out_.area[p];
-    part.heir = tree_->nearest(part.center, [&](std::uint32_t q) { return may_grow(q) && out_.area[q] <= limit; }).part;
-    if (part.heir == kNone) part.heir = tree_->nearest(part.center, may_grow).part;
+    part.heir =
+        tree_->nearest(part.shape.center, [&](std::uint32_t q) { return may_grow(q) && out_.area[q] <= limit; }).part;
+    if (part.heir == kNone) part.heir = tree_->nearest(part.shape.center, may_grow).part;
     if (part.heir == kNone) part.heir = near_[part.farthest].part;
   }
 
@@ -243,7 +229,7 @@ class Greedy {
     heir.inherited = std::max(heir.inherited, reach);
     heir.stands += part.stands;
     if (keep_area_ && out_.stays[part.heir] == 0) {
-      heir.growth = growth_of(out_.area[part.heir], heir.radius, heir.stands);
+      heir.growth = heir.shape.growth_for(heir.stands);
     }
     part.alive = false;
     tree_->remove(entry.part);
@@ -281,58 +267,6 @@ Result<ThinParts> thin_parts(const Mesh& mesh, const ThinPartsOptions& options, 
   Greedy(mesh, options, out, task).run();
   if (task.cancelled()) return cancelled_error("thin parts");
   return out;
-}
-
-void grow_parts(const Mesh& original, const ThinParts& thin, const std::vector<double>& area_of_part, double most,
-                const Mat4d& metric, const std::vector<std::uint32_t>& origin, Mesh& mesh) {
-  const std::size_t parts = thin.parts.count;
-  const auto placed = [&](std::uint32_t v) { return metric.direction(to_double(mesh.positions[v])); };
-  std::vector<std::uint32_t> part_of(mesh.vertex_count(), kNone);
-  std::vector<Sum> sums(parts);
-  std::vector<Vec3d> moments(parts);  // in the mesh's own space, where the centroid is that of the placed one
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const std::uint32_t p = thin.parts.of_triangle(original, origin[t]);
-    if (p == kNone) continue;  // a degenerate one that stays on request
-    const Triangle v = mesh.vertices_of(t);
-    for (const std::uint32_t c : v) part_of[c] = p;
-    const double before = sums[p].area;
-    sums[p].add(placed(v[0]), placed(v[1]), placed(v[2]));
-    const Vec3d corners =
-        to_double(mesh.positions[v[0]]) + to_double(mesh.positions[v[1]]) + to_double(mesh.positions[v[2]]);
-    moments[p] += corners * ((sums[p].area - before) / 3);
-  }
-  std::vector<double> reach(parts, 0), scale(parts, 1);
-  const auto center = [&](std::uint32_t p) { return moments[p] / sums[p].area; };
-  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
-    const std::uint32_t p = part_of[v];
-    if (p == kNone || !(sums[p].area > 0)) continue;
-    reach[p] = std::max(reach[p], length(metric.direction(to_double(mesh.positions[v]) - center(p))));
-  }
-  constexpr double kSame = 1.000001;  // area that rounding alone may cost
-  for (std::size_t p = 0; p < parts; ++p) {
-    if (thin.stays[p] != 0 || !(sums[p].area > 0) || !(reach[p] > 0)) continue;
-    if (!(area_of_part[p] > kSame * sums[p].area)) continue;
-    const double wanted = growth_of(sums[p].area, reach[p], area_of_part[p]);
-    if (wanted <= 2 * most) scale[p] = 1 + std::min(wanted, most) / reach[p];
-  }
-  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
-    const std::uint32_t p = part_of[v];
-    if (p == kNone || scale[p] == 1) continue;
-    const Vec3d c = center(p);
-    mesh.positions[v] = to_float(c + (to_double(mesh.positions[v]) - c) * scale[p]);
-  }
-  for (AttributeStream& stream : mesh.attributes) {
-    auto* deltas = std::get_if<std::vector<float>>(&stream.values);
-    if (stream.semantic != Semantic::morph_position || deltas == nullptr) continue;
-    for (std::uint32_t w = 0; w < mesh.wedge_count(); ++w) {
-      const std::uint32_t p = part_of[mesh.vertex_of(w)];
-      if (p == kNone || scale[p] == 1) continue;
-      for (std::size_t k = 0; k < stream.components; ++k) {
-        float& delta = (*deltas)[w * stream.components + k];
-        delta = static_cast<float>(delta * scale[p]);
-      }
-    }
-  }
 }
 
 }  // namespace lodestone::simplify

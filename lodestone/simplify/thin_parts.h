@@ -40,12 +40,4 @@ struct ThinParts {
 /// The same for any number of threads. Errors: bad_argument (sizes of `locked` or `weights`), cancelled.
 Result<ThinParts> thin_parts(const Mesh& mesh, const ThinPartsOptions& options = {}, Task task = {});
 
-/// Enlarges the parts of `mesh`, a level of `original`, about their centroids until each has the area that it stands
-/// for, `area_of_part` (units of the metric squared), but moves no vertex farther than `most` (units of the metric).
-/// A part that would have to move more than twice as far is left as it is, as are those that stay: enlarging a large
-/// sparse piece as a whole moves much and adds little. `origin`: for each triangle the original's that it comes from.
-/// Morph targets grow along.
-void grow_parts(const Mesh& original, const ThinParts& thin, const std::vector<double>& area_of_part, double most,
-                const Mat4d& metric, const std::vector<std::uint32_t>& origin, Mesh& mesh);
-
 }  // namespace lodestone::simplify

@@ -142,38 +142,5 @@ TEST(ThinParts, odd_meshes_are_no_trouble) {
   EXPECT_TRUE(order_of(mesh, options).vanishings.empty());
 }
 
-TEST(GrowParts, each_part_gets_its_area_unless_it_would_move_too_far) {
-  const Mesh original = crumbs(4);
-  const ThinParts thin = order_of(original);
-  const std::vector<std::uint32_t> origin{0, 1, 2, 3};
-  std::vector<double> wanted = thin.area;
-  wanted[0] *= 4;    // twice as large: some 0.01 to move
-  wanted[1] *= 400;  // twenty times as large
-  wanted[2] *= 0.5;
-  Mesh grown = original;
-  grow_parts(original, thin, wanted, 0.05, {}, origin, grown);
-  const auto area = [&](std::size_t t) {
-    const Triangle v = grown.vertices_of(t);
-    return length(scaled_normal(to_double(grown.positions[v[0]]), to_double(grown.positions[v[1]]),
-                                to_double(grown.positions[v[2]]))) /
-           2;
-  };
-  EXPECT_NEAR(area(0), wanted[0], 1e-4 * wanted[0]);
-  for (std::size_t v = 3; v < 12; ++v) EXPECT_EQ(grown.positions[v], original.positions[v]);
-  grow_parts(original, thin, wanted, 1, {}, origin, grown);
-  EXPECT_NEAR(area(1), wanted[1], 1e-4 * wanted[1]);
-  // Between once and twice the limit it goes as far as the limit.
-  const auto moved = [&](const Mesh& mesh) {
-    double most = 0;
-    for (std::size_t v = 3; v < 6; ++v) {
-      most = std::max(most, length(to_double(mesh.positions[v]) - to_double(original.positions[v])));
-    }
-    return most;
-  };
-  Mesh limited = original;
-  grow_parts(original, thin, wanted, 0.7 * moved(grown), {}, origin, limited);
-  EXPECT_NEAR(moved(limited), 0.7 * moved(grown), 1e-4 * moved(grown));
-}
-
 }  // namespace
 }  // namespace lodestone::simplify
