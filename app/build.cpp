@@ -17,15 +17,16 @@ namespace lodestone::app {
 namespace fs = std::filesystem;
 namespace {
 
-void add_levels(BuildReport& report, const Ladder& ladder, const io::WriteReport& written, const measure::View& view) {
+void add_levels(BuildReport& report, const Ladder& ladder, const io::WriteReport& written, const BuildPlan& plan) {
+  const bool pruned = plan.influence.influence.vanishes();
   for (std::size_t i = 0; i < ladder.levels.size(); ++i) {
     const Level& level = ladder.levels[i];
     LevelReport row;
     row.level = i;
     row.triangles = level.triangles;
-    row.vanished_parts = level.vanished_parts;
+    if (pruned) row.vanished_parts = level.vanished_parts;
     row.error = level.error;
-    row.switch_distance = measure::switch_distance(level.error.error, 1, view);
+    row.switch_distance = measure::switch_distance(level.error.error, 1, plan.view);
     row.bytes = written.level_bytes[i];
     row.file = written.files[i].string();
     row.seconds = level.seconds;
@@ -69,7 +70,7 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   if (!written) return fail(written.error());
   for (const fs::path& file : written->files) console.wrote(file.string());
   report.write_seconds = watch.lap();
-  add_levels(report, result->ladder, *written, plan.view);
+  add_levels(report, result->ladder, *written, plan);
   for (const std::string& warning : written->warnings) {
     console.note(fmt::format("{}: {}", job.output.string(), warning));
     report.warnings.push_back(warning);
@@ -104,7 +105,7 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
     const double share =
         static_cast<double>(level.triangles) / static_cast<double>(std::max<std::size_t>(1, report.triangles));
     std::vector<std::string> row{fmt::format("{}", level.level), with_separators(level.triangles), percent(share)};
-    if (pruned) row.push_back(with_separators(level.vanished_parts));
+    if (level.vanished_parts) row.push_back(with_separators(*level.vanished_parts));
     for (const std::string& cell :
          {short_number(level.error.error), percent(level.error.relative(level.error.error)),
           short_number(level.switch_distance), human_bytes(level.bytes), seconds_text(level.seconds)}) {

@@ -99,7 +99,7 @@ std::string table_of(const SimplifyReport& report) {
       report.triangles_in == 0 ? 0 : static_cast<double>(report.triangles) / static_cast<double>(report.triangles_in);
   table.add_row({"triangles", fmt::format("{} of {} ({})", with_separators(report.triangles),
                                           with_separators(report.triangles_in), percent(share))});
-  if (report.pruned) table.add_row({"parts gone", with_separators(report.vanished_parts)});
+  if (report.vanished_parts) table.add_row({"parts gone", with_separators(*report.vanished_parts)});
   table.add_row({"error", fmt::format("{}{} ({} of the diagonal, {})", short_number(error.error), unit,
                                       percent(error.relative(error.error)), to_string(error.kind))});
   table.add_row({"mean error", fmt::format("{}{} ({})", short_number(error.mean_error), unit,
@@ -156,8 +156,7 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
   report.write_seconds = watch.lap();
 
   report.triangles = result->level.triangles;
-  report.vanished_parts = result->level.vanished_parts;
-  report.pruned = plan->influence.influence.vanishes();
+  if (plan->influence.influence.vanishes()) report.vanished_parts = result->level.vanished_parts;
   report.error = result->level.error;
   report.stop_reason = simplify::to_string(result->stop);
   report.shortfall = result->shortfall;

@@ -7,6 +7,7 @@
 #include "lodestone/chain/collapse_plan_detail.h"
 #include "lodestone/chain/working_meshes_detail.h"
 #include "lodestone/core/adjacency.h"
+#include "lodestone/core/parts.h"
 #include "lodestone/simplify/grow_parts.h"
 
 namespace lodestone::chain::detail {
@@ -35,6 +36,7 @@ Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t sma
   plan.original_ = &original;
   plan.uses_ = instance_counts(original);
   plan.placings_ = largest_placings(original);
+  plan.prunes_ = influence.vanishes();
   plan.keep_area_ = influence.keep_area;
   Result<std::vector<std::vector<std::uint8_t>>> untouched = untouched_triangles(original, influence);
   if (!untouched) return fail(untouched.error());
@@ -232,6 +234,16 @@ Result<Mesh> CollapsePlan::mesh_after(std::size_t m, const Progress& progress, d
   return std::move(replayed->mesh);
 }
 
+// Parts drawn when nothing vanishes, of meshes that have several: one stays of each.
+std::size_t CollapsePlan::drawn_parts() const {
+  std::size_t parts = 0;
+  for (std::size_t m = 0; m < logs_.size(); ++m) {
+    const std::size_t count = logs_[m].start_triangles > 0 ? parts_of(mesh(m)).count : 0;
+    if (count > 1) parts += count * uses_[m];
+  }
+  return parts;
+}
+
 std::string CollapsePlan::why_it_ends() const {
   std::vector<std::string> causes;
   const auto tell = [&](std::size_t count, const char* text) {
@@ -242,8 +254,17 @@ std::string CollapsePlan::why_it_ends() const {
   tell(locked_.non_manifold, "non-manifold (--weld may close cracks; else split the model into clean pieces)");
   tell(locked_.border, "on open borders (leave --keep-border off to free them)");
   tell(locked_.by_request, "locked on request");
-  if (causes.empty()) return "no collapse is left that keeps the surface's topology and folds nothing";
-  return fmt::format("vertices that cannot move: {}", fmt::join(causes, ", "));
+  std::string why = causes.empty() ? "no collapse is left that keeps the surface's topology and folds nothing"
+                                   : fmt::format("vertices that cannot move: {}", fmt::join(causes, ", "));
+  // A part keeps a triangle or four: where they are many of what is left, that is the cause.
+  constexpr std::size_t kMany = 16;
+  if (prunes_) return why;
+  const std::size_t parts = drawn_parts();
+  if (parts < 2 || parts * kMany < triangles_after(size())) return why;
+  return why + fmt::format(
+                   "; {} separate parts keep a few triangles each (--prune or --keep-area lets small ones vanish, "
+                   "--join LENGTH sews near ones together)",
+                   with_separators(parts));
 }
 
 }  // namespace lodestone::chain::detail

@@ -60,6 +60,7 @@ class CollapsePlan {
                          const Task& task);
   void merge();
   void count_triangles();
+  std::size_t drawn_parts() const;
   std::vector<Progress> progress_after(std::size_t count) const;
   Result<Mesh> mesh_after(std::size_t m, const Progress& progress, double error, const Task& task) const;
 
@@ -73,7 +74,7 @@ class CollapsePlan {
   std::vector<Step> steps_;
   std::vector<std::size_t> drawn_after_;  // size() + 1 entries, never rising
   simplify::LockCounts locked_;
-  bool keep_area_ = false;
+  bool prunes_ = false, keep_area_ = false;
 };
 
 }  // namespace lodestone::chain::detail
