@@ -79,7 +79,7 @@ bool read_count(std::string_view text, std::uint64_t& out) {
 
 Result<void> read_only(const std::filesystem::path& path, InfluencePlan& plan) {
   constexpr const char* kRemedy = "a line is a triangle's number, from 0, or a range such as 100-199";
-  const Result<void> read = read_lines(
+  Result<void> read = read_lines(
       path, "is no triangle", kRemedy, [&](const std::vector<std::string_view>& words, const std::string& place) {
         chain::TriangleRange range;
         const std::size_t dash = words[0].find('-');
