@@ -17,14 +17,16 @@ namespace lodestone::app {
 namespace fs = std::filesystem;
 namespace {
 
-void add_levels(BuildReport& report, const Ladder& ladder, const io::WriteReport& written, const measure::View& view) {
+void add_levels(BuildReport& report, const Ladder& ladder, const io::WriteReport& written, const BuildPlan& plan) {
+  const bool pruned = plan.influence.influence.vanishes();
   for (std::size_t i = 0; i < ladder.levels.size(); ++i) {
     const Level& level = ladder.levels[i];
     LevelReport row;
     row.level = i;
     row.triangles = level.triangles;
+    if (pruned) row.vanished_parts = level.vanished_parts;
     row.error = level.error;
-    row.switch_distance = measure::switch_distance(level.error.error, 1, view);
+    row.switch_distance = measure::switch_distance(level.error.error, 1, plan.view);
     row.bytes = written.level_bytes[i];
     row.file = written.files[i].string();
     row.seconds = level.seconds;
@@ -48,9 +50,11 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   report.unit = unit_name(model->meters_per_unit);
   report.warnings = model->warnings;
 
-  std::vector<std::string> notes;
-  const Result<chain::LadderOptions> options = ladder_options(plan, *model, notes);
+  std::vector<std::string> notes, warnings;
+  const Result<chain::LadderOptions> options = ladder_options(plan, *model, notes, warnings);
   if (!options) return fail(options.error());
+  report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
+  notes.insert(notes.end(), warnings.begin(), warnings.end());
   for (const std::string& note : notes) console.note(fmt::format("{}: {}", report.input, note));
   Result<chain::LadderResult> result =
       chain::build_ladder(std::move(*model), *options, task.part(0.8, "making levels"));
@@ -66,7 +70,7 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   if (!written) return fail(written.error());
   for (const fs::path& file : written->files) console.wrote(file.string());
   report.write_seconds = watch.lap();
-  add_levels(report, result->ladder, *written, plan.view);
+  add_levels(report, result->ladder, *written, plan);
   for (const std::string& warning : written->warnings) {
     console.note(fmt::format("{}: {}", job.output.string(), warning));
     report.warnings.push_back(warning);
@@ -91,6 +95,8 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
   const std::string unit = report.unit.empty() ? "" : " (" + report.unit + ")";
   Table table;
   for (const char* title : {"level", "triangles", "share"}) table.add_column(title);
+  const bool pruned = plan.influence.influence.vanishes();
+  if (pruned) table.add_column("parts gone");
   table.add_column("error" + unit);
   table.add_column("relative");
   table.add_column("1 px from" + unit);
@@ -98,9 +104,14 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
   for (const LevelReport& level : report.levels) {
     const double share =
         static_cast<double>(level.triangles) / static_cast<double>(std::max<std::size_t>(1, report.triangles));
-    table.add_row({fmt::format("{}", level.level), with_separators(level.triangles), percent(share),
-                   short_number(level.error.error), percent(level.error.relative(level.error.error)),
-                   short_number(level.switch_distance), human_bytes(level.bytes), seconds_text(level.seconds)});
+    std::vector<std::string> row{fmt::format("{}", level.level), with_separators(level.triangles), percent(share)};
+    if (level.vanished_parts) row.push_back(with_separators(*level.vanished_parts));
+    for (const std::string& cell :
+         {short_number(level.error.error), percent(level.error.relative(level.error.error)),
+          short_number(level.switch_distance), human_bytes(level.bytes), seconds_text(level.seconds)}) {
+      row.push_back(cell);
+    }
+    table.add_row(std::move(row));
   }
   std::string out =
       fmt::format("{} -> {}\n{}", printable(report.input), printable(report.levels.back().file), table.text());

@@ -65,13 +65,13 @@ std::size_t planned_levels(const BuildPlan& plan) {
   return 1 + std::max({plan.ratios.size(), plan.triangles.size(), plan.errors.size(), plan.distances.size()});
 }
 
-Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& model,
-                                            std::vector<std::string>& notes) {
+Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& model, std::vector<std::string>& notes,
+                                            std::vector<std::string>& warnings) {
   chain::LadderOptions options;
   if (plan.levels > 0) options.levels = plan.levels;
   options.ratios = plan.ratios;
   options.triangles = plan.triangles;
-  Result<chain::Influence> influence = plan.influence.for_model(model);
+  Result<chain::Influence> influence = plan.influence.for_model(model, warnings);
   if (!influence) return fail(influence.error());
   options.influence = std::move(*influence);
   options.distance = plan.distance;

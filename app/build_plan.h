@@ -31,8 +31,10 @@ Result<BuildPlan> build_plan(const Arguments& arguments);
 /// Levels that a ladder has when it does not end early, with level 0.
 std::size_t planned_levels(const BuildPlan& plan);
 
-/// The options for one model. `notes` gets what a user should know, such as "keeping 10 %".
-Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& model, std::vector<std::string>& notes);
+/// The options for one model. `notes` gets what a user should know, such as "keeping 10 %"; `warnings` what does not
+/// fit the model.
+Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& model, std::vector<std::string>& notes,
+                                            std::vector<std::string>& warnings);
 
 struct BuildJob {
   std::filesystem::path input, output;

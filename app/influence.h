@@ -1,7 +1,10 @@
-// --weight-by, --weights, --lock, --keep-border, --weld: where a model matters more, and what stays.
+// --weight-by, --weights, --lock, --keep-border, --weld, --join, --only, --prune, --keep-area: where a model matters
+// more, what stays, and what may vanish.
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "app/command_line.h"
 #include "app/shared_options.h"
@@ -15,13 +18,17 @@ OptionGroup method_group();
 /// What was asked, before the model is known.
 struct InfluencePlan {
   chain::Influence influence;
-  std::optional<LengthArgument> weld;
+  std::optional<LengthArgument> weld, join;
+  std::vector<std::string> sphere_places;  ///< where each sphere stands on the command line or in a file
+  std::vector<std::string> only_places;    ///< the same for each range of triangles
 
-  /// With lengths in the model's units. Errors: bad_argument (a unit, and the model has none).
-  Result<chain::Influence> for_model(const Model& model) const;
+  /// With lengths in the model's units. `warnings` gets spheres that hold no vertex. Errors: bad_argument (a unit, and
+  /// the model has none), bad_format (a triangle that the model has not).
+  Result<chain::Influence> for_model(const Model& model, std::vector<std::string>& warnings) const;
 };
 
-/// Reads the options, and the file of --weights. Errors: bad_argument, cannot_read, bad_format (with the line).
+/// Reads the options, and the files of --weights and --only. Errors: bad_argument, cannot_read, bad_format (with the
+/// line).
 Result<InfluencePlan> influence_of(const Arguments& arguments, const LengthRules& lengths);
 
 }  // namespace lodestone::app

@@ -30,6 +30,7 @@ Json level_json(const LevelReport& level) {
   Json json;
   json["level"] = level.level;
   json["triangles"] = level.triangles;
+  if (level.vanished_parts) json["vanished_parts"] = *level.vanished_parts;
   add_error(json, level.error);
   json["switch_distance"] = level.switch_distance;
   json["bytes"] = level.bytes;
@@ -107,6 +108,7 @@ std::string to_json(const SimplifyReport& report) {
   json["input"] = {{"path", report.input}};
   json["triangles_in"] = report.triangles_in;
   json["triangles"] = report.triangles;
+  if (report.vanished_parts) json["vanished_parts"] = *report.vanished_parts;
   add_error(json, report.error);
   json["diagonal"] = report.error.diagonal;
   json["unit"] = unit_or_null(report.unit);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace lodestone::app {
 struct LevelReport {
   std::size_t level = 0;
   std::size_t triangles = 0;
+  std::optional<std::size_t> vanished_parts;  ///< drawn pieces of the input that have nothing left here; with --prune
   LevelError error;
   double switch_distance = 0;  ///< model units
   std::uint64_t bytes = 0;
@@ -40,6 +42,7 @@ struct BuildReport {
 struct SimplifyReport {
   std::string input, output, unit;
   std::size_t triangles_in = 0, triangles = 0;
+  std::optional<std::size_t> vanished_parts;  ///< as in LevelReport
   LevelError error;
   std::string stop_reason, shortfall;
   simplify::LockCounts locked;

@@ -66,9 +66,9 @@ Result<SimplifyPlan> plan_of(const Arguments& arguments) {
 }
 
 Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const Model& model, std::size_t triangles,
-                                                const Console& console) {
+                                                const Console& console, std::vector<std::string>& warnings) {
   chain::SimplifyModelOptions options;
-  Result<chain::Influence> influence = plan.influence.for_model(model);
+  Result<chain::Influence> influence = plan.influence.for_model(model, warnings);
   if (!influence) return fail(influence.error());
   options.influence = std::move(*influence);
   options.distance = plan.distance;
@@ -99,6 +99,7 @@ std::string table_of(const SimplifyReport& report) {
       report.triangles_in == 0 ? 0 : static_cast<double>(report.triangles) / static_cast<double>(report.triangles_in);
   table.add_row({"triangles", fmt::format("{} of {} ({})", with_separators(report.triangles),
                                           with_separators(report.triangles_in), percent(share))});
+  if (report.vanished_parts) table.add_row({"parts gone", with_separators(*report.vanished_parts)});
   table.add_row({"error", fmt::format("{}{} ({} of the diagonal, {})", short_number(error.error), unit,
                                       percent(error.relative(error.error)), to_string(error.kind))});
   table.add_row({"mean error", fmt::format("{}{} ({})", short_number(error.mean_error), unit,
@@ -136,8 +137,14 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
   report.unit = unit_name(model->meters_per_unit);
   report.warnings = model->warnings;
 
-  const Result<chain::SimplifyModelOptions> options = options_for(*plan, *model, report.triangles_in, console);
+  std::vector<std::string> warnings;
+  const Result<chain::SimplifyModelOptions> options =
+      options_for(*plan, *model, report.triangles_in, console, warnings);
   if (!options) return fail(options.error());
+  for (const std::string& warning : warnings) {
+    console.note(fmt::format("{}: {}", input, warning));
+    report.warnings.push_back(warning);
+  }
   const Result<chain::SimplifyModelResult> result =
       chain::simplify_model(*model, *options, console.task().part(0.75, "simplifying"));
   if (!result) return fail(result.error());
@@ -149,6 +156,7 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
   report.write_seconds = watch.lap();
 
   report.triangles = result->level.triangles;
+  if (plan->influence.influence.vanishes()) report.vanished_parts = result->level.vanished_parts;
   report.error = result->level.error;
   report.stop_reason = simplify::to_string(result->stop);
   report.shortfall = result->shortfall;

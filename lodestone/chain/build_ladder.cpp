@@ -99,6 +99,7 @@ Result<Cut> make_cut(const CollapsePlan& plan, std::size_t prefix, const Referen
   if (!d) return fail(d.error());
   cut.measure_seconds = measuring.total();
   cut.level.triangles = drawn_triangles(*model);
+  cut.level.vanished_parts = plan.vanished_after(prefix);
   cut.level.model = std::move(*model);
   cut.level.method = "edge collapse";
   cut.level.seconds = cut.simplify_seconds + cut.measure_seconds;

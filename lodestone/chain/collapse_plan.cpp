@@ -1,67 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "lodestone/base/units.h"
 #include "lodestone/chain/collapse_plan_detail.h"
-#include "lodestone/core/weld.h"
-#include "lodestone/spatial/snap.h"
+#include "lodestone/chain/working_meshes_detail.h"
+#include "lodestone/core/adjacency.h"
+#include "lodestone/core/parts.h"
+#include "lodestone/simplify/grow_parts.h"
 
 namespace lodestone::chain::detail {
 
 namespace {
-
-// The placing of each mesh that shows its errors largest: in its space the mesh is simplified, and its errors are the
-// scene's.
-std::vector<Mat4d> largest_placings(const Model& model) {
-  std::vector<Mat4d> placings(model.meshes.size());
-  std::vector<double> scales(model.meshes.size(), 0);
-  for (const Instance& i : model.instances) {
-    const double scale = i.transform.scale_bound();
-    if (scale <= scales[i.mesh]) continue;
-    scales[i.mesh] = scale;
-    placings[i.mesh] = i.transform.linear();
-  }
-  return placings;
-}
-
-// All meshes' collapses by error in world space; within a mesh the log's order, as its errors never fall.
-std::vector<std::uint32_t> merge_order(const std::vector<CollapseLog>& logs) {
-  struct Step {
-    float error;
-    std::uint32_t mesh;
-  };
-  std::vector<Step> steps;
-  std::size_t total = 0;
-  for (const CollapseLog& log : logs) total += log.collapses.size();
-  steps.reserve(total);
-  for (std::uint32_t m = 0; m < logs.size(); ++m) {
-    for (const Collapse& c : logs[m].collapses) steps.push_back({c.error, m});
-  }
-  const bool one_mesh = steps.empty() || steps.front().mesh == steps.back().mesh;
-  if (!one_mesh) {
-    std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.error < b.error; });
-  }
-  std::vector<std::uint32_t> order(steps.size());
-  for (std::size_t i = 0; i < steps.size(); ++i) order[i] = steps[i].mesh;
-  return order;
-}
-
-// The meshes with near vertices joined. A tolerance in the scene is smaller in a mesh that is drawn larger.
-Result<std::vector<Mesh>> weld_near(const Model& model, const std::vector<Mat4d>& placings, double tolerance,
-                                    const Task& task) {
-  std::vector<Mesh> out = model.meshes;
-  for (std::size_t m = 0; m < out.size(); ++m) {
-    const double scale = placings[m].scale_bound();
-    const Result<std::size_t> moved =
-        spatial::snap_positions(out[m].positions, scale > 0 ? tolerance / scale : tolerance, task);
-    if (!moved) return fail(moved.error());
-    Result<Mesh> welded = weld_exact(std::move(out[m]), task);
-    if (!welded) return fail(welded.error());
-    out[m] = std::move(*welded);
-  }
-  return out;
-}
 
 void add(simplify::LockCounts& sum, const simplify::LockCounts& more) {
   sum.border += more.border;
@@ -70,55 +21,143 @@ void add(simplify::LockCounts& sum, const simplify::LockCounts& more) {
   sum.by_request += more.by_request;
 }
 
+void lock_borders(const Mesh& mesh, std::vector<std::uint8_t>& locked, const Task& task) {
+  locked.resize(mesh.vertex_count(), 0);
+  for (const Edge& edge : edge_triangles(mesh, task).edges) {
+    if (edge.count == 1) locked[edge.a] = locked[edge.b] = 1;
+  }
+}
+
 }  // namespace
 
 Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t smallest, const Influence& influence,
                                           Task task) {
   CollapsePlan plan;
   plan.original_ = &original;
-  const std::vector<std::uint32_t> uses = instance_counts(original);
-  const std::size_t all = std::max<std::size_t>(1, drawn_triangles(original));
-  const bool one_mesh = original.instances.size() == 1;
-  const std::vector<Mat4d> placings = largest_placings(original);
+  plan.uses_ = instance_counts(original);
+  plan.placings_ = largest_placings(original);
+  plan.prunes_ = influence.vanishes();
+  plan.keep_area_ = influence.keep_area;
+  Result<std::vector<std::vector<std::uint8_t>>> untouched = untouched_triangles(original, influence);
+  if (!untouched) return fail(untouched.error());
+  plan.untouched_ = std::move(*untouched);
   Model working;  // what the influences are about
   working.instances = original.instances;
-  if (influence.weld_tolerance > 0) {
-    Result<std::vector<Mesh>> welded = weld_near(original, placings, influence.weld_tolerance, task);
-    if (!welded) return fail(welded.error());
-    working.meshes = std::move(*welded);
-  }
+  Result<std::vector<Mesh>> meshes = working_meshes(original, plan.placings_, influence, plan.untouched_, task);
+  if (!meshes) return fail(meshes.error());
+  working.meshes = std::move(*meshes);
   Result<std::vector<VertexInfluence>> influences =
-      vertex_influences(influence.weld_tolerance > 0 ? working : original, influence);
+      vertex_influences(working.meshes.empty() ? original : working, influence);
   if (!influences) return fail(influences.error());
-  plan.welded_ = std::move(working.meshes);
+  plan.working_ = std::move(working.meshes);
   plan.logs_.resize(original.meshes.size());
-  std::size_t drawn = 0;
+  plan.thin_.resize(original.meshes.size());
+  const std::size_t all = std::max<std::size_t>(1, drawn_triangles(original));
+  const std::size_t target = original.instances.size() == 1 ? std::max<std::size_t>(1, smallest) : 1;
   for (std::size_t m = 0; m < original.meshes.size(); ++m) {
-    const Mesh& mesh = plan.mesh(m);
-    if (uses[m] == 0 || mesh.triangles.empty()) continue;
-    simplify::EdgeCollapseOptions options;
-    options.target_triangles = one_mesh ? std::max<std::size_t>(1, smallest) : 1;
-    options.keep_border = influence.keep_border;
-    options.weights = std::move((*influences)[m].weights);
-    options.locked = std::move((*influences)[m].locked);
-    options.metric = placings[m];
-    options.record_log = true;
-    const double share = static_cast<double>(mesh.triangles.size() * uses[m]) / static_cast<double>(all);
-    Result<simplify::EdgeCollapseResult> run = simplify::collapse_edges(mesh, options, task.part(share));
-    if (!run) return fail(run.error());
-    plan.logs_[m] = std::move(*run->log);
-    drawn += std::size_t{plan.logs_[m].start_triangles} * uses[m];
-    add(plan.locked_, run->locked);
+    const std::size_t triangles = plan.mesh(m).triangles.size();
+    if (plan.uses_[m] == 0 || triangles == 0) continue;
+    const double share = static_cast<double>(triangles * plan.uses_[m]) / static_cast<double>(all);
+    const Result<void> planned = plan.plan_mesh(m, target, influence, std::move((*influences)[m]), task.part(share));
+    if (!planned) return fail(planned.error());
   }
-  plan.mesh_of_step_ = merge_order(plan.logs_);
-  plan.drawn_after_.reserve(plan.size() + 1);
-  plan.drawn_after_.push_back(drawn);
-  std::vector<std::size_t> next(original.meshes.size(), 0);
-  for (const std::uint32_t m : plan.mesh_of_step_) {
-    drawn -= std::size_t{plan.logs_[m].collapses[next[m]++].faces} * uses[m];
-    plan.drawn_after_.push_back(drawn);
-  }
+  plan.merge();
+  plan.count_triangles();
   return plan;
+}
+
+Result<void> CollapsePlan::plan_mesh(std::size_t m, std::size_t target, const Influence& influence,
+                                     VertexInfluence told, const Task& task) {
+  simplify::EdgeCollapseOptions options;
+  options.target_triangles = target;
+  options.keep_border = influence.keep_border;
+  options.weights = std::move(told.weights);
+  options.locked = std::move(told.locked);
+  options.metric = placings_[m];
+  options.record_log = true;
+  Result<simplify::EdgeCollapseResult> run =
+      simplify::collapse_edges(mesh(m), options, influence.vanishes() ? task.part(0.7) : task);
+  if (!run) return fail(run.error());
+  logs_[m] = std::move(*run->log);
+  add(locked_, run->locked);
+  if (!influence.vanishes()) return {};
+  simplify::ThinPartsOptions thin;
+  thin.keep_area = influence.keep_area;
+  thin.weights = std::move(options.weights);
+  thin.locked = std::move(options.locked);
+  if (influence.keep_border) lock_borders(mesh(m), thin.locked, task);
+  thin.left_out = logs_[m].dropped;
+  thin.metric = placings_[m];
+  Result<simplify::ThinParts> parts = simplify::thin_parts(mesh(m), thin, task.part(0.3));
+  if (!parts) return fail(parts.error());
+  thin_[m] = std::move(*parts);
+  return {};
+}
+
+// All meshes' steps by error in world space; within a mesh the order of its own, as its errors never fall.
+void CollapsePlan::merge() {
+  struct Entry {
+    float error;
+    Step step;
+  };
+  std::vector<Entry> entries;
+  std::size_t total = 0;
+  for (std::size_t m = 0; m < logs_.size(); ++m) total += logs_[m].collapses.size() + thin_[m].vanishings.size();
+  entries.reserve(total);
+  std::size_t lists = 0;
+  for (std::uint32_t m = 0; m < logs_.size(); ++m) {
+    for (const Collapse& c : logs_[m].collapses) entries.push_back({c.error, {m, false}});
+    for (const simplify::Vanishing& v : thin_[m].vanishings) entries.push_back({v.error, {m, true}});
+    lists += (logs_[m].collapses.empty() ? 0 : 1) + (thin_[m].vanishings.empty() ? 0 : 1);
+  }
+  if (lists > 1) {
+    std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.error < b.error; });
+  }
+  steps_.reserve(entries.size());
+  for (const Entry& entry : entries) steps_.push_back(entry.step);
+}
+
+// What a part still had goes when it vanishes; collapses in it that come later count nothing.
+void CollapsePlan::count_triangles() {
+  std::size_t drawn = 0;
+  std::vector<std::vector<std::uint32_t>> left(logs_.size());  // triangles of each part
+  for (std::size_t m = 0; m < logs_.size(); ++m) {
+    drawn += std::size_t{logs_[m].start_triangles} * uses_[m];
+    if (!untouched_.empty()) {
+      for (const std::uint32_t t : logs_[m].dropped) drawn += untouched_[m][t] != 0 ? uses_[m] : 0;
+    }
+    if (thin_[m].vanishings.empty()) continue;
+    left[m].assign(thin_[m].parts.count, 0);
+    std::size_t next = 0;
+    const std::vector<std::uint32_t>& dropped = logs_[m].dropped;
+    for (std::size_t t = 0; t < mesh(m).triangles.size(); ++t) {
+      if (next < dropped.size() && dropped[next] == t) {
+        ++next;
+      } else {
+        ++left[m][thin_[m].parts.of_triangle(mesh(m), t)];
+      }
+    }
+  }
+  drawn_after_.reserve(size() + 1);
+  drawn_after_.push_back(drawn);
+  std::vector<Progress> at(logs_.size());
+  for (const Step& step : steps_) {
+    const std::size_t m = step.mesh();
+    std::uint32_t faces = 0;
+    if (step.vanishes()) {
+      faces = std::exchange(left[m][thin_[m].vanishings[at[m].vanishings++].part], 0);
+    } else {
+      const Collapse& c = logs_[m].collapses[at[m].collapses++];
+      faces = c.faces;
+      if (!left[m].empty()) {
+        std::uint32_t& rest = left[m][thin_[m].parts.of_vertex[c.kept]];
+        faces = std::min(faces, rest);
+        rest -= faces;
+      }
+    }
+    drawn -= std::size_t{faces} * uses_[m];
+    drawn_after_.push_back(drawn);
+  }
 }
 
 std::size_t CollapsePlan::prefix_for(std::size_t triangles) const {
@@ -127,9 +166,29 @@ std::size_t CollapsePlan::prefix_for(std::size_t triangles) const {
   return std::min(size(), static_cast<std::size_t>(found - drawn_after_.begin()));
 }
 
+std::size_t CollapsePlan::vanished_after(std::size_t count) const {
+  std::size_t vanished = 0;
+  for (std::size_t i = 0; i < count; ++i) vanished += steps_[i].vanishes() ? uses_[steps_[i].mesh()] : 0;
+  return vanished;
+}
+
+std::vector<CollapsePlan::Progress> CollapsePlan::progress_after(std::size_t count) const {
+  std::vector<Progress> at(logs_.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    Progress& p = at[steps_[i].mesh()];
+    ++(steps_[i].vanishes() ? p.vanishings : p.collapses);
+  }
+  return at;
+}
+
 Result<Model> CollapsePlan::model_after(std::size_t count, Task task) const {
-  std::vector<std::size_t> counts(logs_.size(), 0);
-  for (std::size_t i = 0; i < count; ++i) ++counts[mesh_of_step_[i]];
+  const std::vector<Progress> at = progress_after(count);
+  double error = 0;  // the largest of the prefix: its last step's
+  if (count > 0) {
+    const Step last = steps_[count - 1];
+    error = last.vanishes() ? thin_[last.mesh()].vanishings[at[last.mesh()].vanishings - 1].error
+                            : logs_[last.mesh()].collapses[at[last.mesh()].collapses - 1].error;
+  }
   Model model;
   model.instances = original_->instances;
   model.materials = original_->materials;
@@ -142,11 +201,47 @@ Result<Model> CollapsePlan::model_after(std::size_t count, Task task) const {
       model.meshes.push_back(original_->meshes[m]);
       continue;
     }
-    Result<ReplayResult> replayed = replay(mesh(m), logs_[m], counts[m], task.part(share));
-    if (!replayed) return fail(replayed.error());
-    model.meshes.push_back(std::move(replayed->mesh));
+    Result<Mesh> made = mesh_after(m, at[m], error, task.part(share));
+    if (!made) return fail(made.error());
+    model.meshes.push_back(std::move(*made));
   }
   return model;
+}
+
+Result<Mesh> CollapsePlan::mesh_after(std::size_t m, const Progress& progress, double error, const Task& task) const {
+  const simplify::ThinParts& thin = thin_[m];
+  ReplayOptions options;
+  if (!untouched_.empty()) options.untouched = untouched_[m];
+  std::vector<double> area = thin.area;  // that each part stands for
+  if (progress.vanishings > 0) {
+    std::vector<std::uint8_t> gone(thin.parts.count, 0);
+    for (std::size_t i = 0; i < progress.vanishings; ++i) {
+      const simplify::Vanishing& v = thin.vanishings[i];
+      gone[v.part] = 1;
+      area[v.absorber] += area[v.part];
+    }
+    options.left_out.resize(mesh(m).triangles.size(), 0);
+    for (std::size_t t = 0; t < options.left_out.size(); ++t) {
+      const std::uint32_t part = thin.parts.of_triangle(mesh(m), t);
+      options.left_out[t] = part != kNone ? gone[part] : 0;
+    }
+  }
+  Result<ReplayResult> replayed = replay(mesh(m), logs_[m], progress.collapses, options, task);
+  if (!replayed) return fail(replayed.error());
+  if (keep_area_) {
+    simplify::grow_parts(mesh(m), thin, area, error, placings_[m], replayed->origin, replayed->mesh);
+  }
+  return std::move(replayed->mesh);
+}
+
+// Parts drawn when nothing vanishes, of meshes that have several: one stays of each.
+std::size_t CollapsePlan::drawn_parts() const {
+  std::size_t parts = 0;
+  for (std::size_t m = 0; m < logs_.size(); ++m) {
+    const std::size_t count = logs_[m].start_triangles > 0 ? parts_of(mesh(m)).count : 0;
+    if (count > 1) parts += count * uses_[m];
+  }
+  return parts;
 }
 
 std::string CollapsePlan::why_it_ends() const {
@@ -159,8 +254,17 @@ std::string CollapsePlan::why_it_ends() const {
   tell(locked_.non_manifold, "non-manifold (--weld may close cracks; else split the model into clean pieces)");
   tell(locked_.border, "on open borders (leave --keep-border off to free them)");
   tell(locked_.by_request, "locked on request");
-  if (causes.empty()) return "no collapse is left that keeps the surface's topology and folds nothing";
-  return fmt::format("vertices that cannot move: {}", fmt::join(causes, ", "));
+  std::string why = causes.empty() ? "no collapse is left that keeps the surface's topology and folds nothing"
+                                   : fmt::format("vertices that cannot move: {}", fmt::join(causes, ", "));
+  // A part keeps a triangle or four: where they are many of what is left, that is the cause.
+  constexpr std::size_t kMany = 16;
+  if (prunes_) return why;
+  const std::size_t parts = drawn_parts();
+  if (parts < 2 || parts * kMany < triangles_after(size())) return why;
+  return why + fmt::format(
+                   "; {} separate parts keep a few triangles each (--prune or --keep-area lets small ones vanish, "
+                   "--join LENGTH sews near ones together)",
+                   with_separators(parts));
 }
 
 }  // namespace lodestone::chain::detail

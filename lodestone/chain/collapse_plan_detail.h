@@ -1,4 +1,5 @@
-// CollapsePlan: one edge-collapse run on every mesh of a model, merged into one order, from which any level can be cut.
+// CollapsePlan: one edge-collapse run on every mesh of a model, and the vanishing of thin parts where it is asked for,
+// merged into one order, from which any level can be cut.
 #pragma once
 
 #include <cstddef>
@@ -12,20 +13,23 @@
 #include "lodestone/core/collapse_log.h"
 #include "lodestone/core/model.h"
 #include "lodestone/simplify/edge_collapse.h"
+#include "lodestone/simplify/thin_parts.h"
 
 namespace lodestone::chain::detail {
 
 class CollapsePlan {
  public:
   /// Collapses every drawn mesh as far as `smallest` drawn triangles may need (1 = as far as it goes). `original` must
-  /// outlive the plan. Errors: empty, cancelled.
+  /// outlive the plan. Errors: empty, bad_argument (the influence does not fit the model), cancelled.
   static Result<CollapsePlan> create(const Model& original, std::size_t smallest, const Influence& influence,
                                      Task task);
 
-  /// Number of merged collapses.
-  std::size_t size() const { return mesh_of_step_.size(); }
-  /// Drawn triangles after the first `count` merged collapses. O(1).
+  /// Number of merged steps: collapses, and parts that vanish.
+  std::size_t size() const { return steps_.size(); }
+  /// Drawn triangles after the first `count` steps. O(1).
   std::size_t triangles_after(std::size_t count) const { return drawn_after_[count]; }
+  /// Drawn parts that have vanished after the first `count` steps. O(count).
+  std::size_t vanished_after(std::size_t count) const;
   /// The shortest prefix that draws at most `triangles`; size() if none does. O(log n).
   std::size_t prefix_for(std::size_t triangles) const;
   /// The model after a prefix; documents, instances and materials shared with the original. O(model).
@@ -36,14 +40,41 @@ class CollapsePlan {
   std::string why_it_ends() const;
 
  private:
-  const Mesh& mesh(std::size_t m) const { return welded_.empty() ? original_->meshes[m] : welded_[m]; }
+  // The next collapse of a mesh, or its next part that vanishes: the mesh's number, and a bit.
+  class Step {
+   public:
+    Step(std::uint32_t mesh, bool vanishes) : bits_(mesh << 1 | (vanishes ? 1U : 0U)) {}
+    std::uint32_t mesh() const { return bits_ >> 1; }
+    bool vanishes() const { return (bits_ & 1U) != 0; }
+
+   private:
+    std::uint32_t bits_;
+  };
+  // How far the steps of one mesh have come.
+  struct Progress {
+    std::size_t collapses = 0, vanishings = 0;
+  };
+
+  const Mesh& mesh(std::size_t m) const { return working_.empty() ? original_->meshes[m] : working_[m]; }
+  Result<void> plan_mesh(std::size_t m, std::size_t target, const Influence& influence, VertexInfluence told,
+                         const Task& task);
+  void merge();
+  void count_triangles();
+  std::size_t drawn_parts() const;
+  std::vector<Progress> progress_after(std::size_t count) const;
+  Result<Mesh> mesh_after(std::size_t m, const Progress& progress, double error, const Task& task) const;
 
   const Model* original_ = nullptr;
-  std::vector<Mesh> welded_;                 // the meshes that the logs are about, where they are not the original's
-  std::vector<CollapseLog> logs_;            // one a mesh; empty for a mesh that is not drawn
-  std::vector<std::uint32_t> mesh_of_step_;  // whose next collapse each merged step is
-  std::vector<std::size_t> drawn_after_;     // size() + 1 entries, never rising
+  std::vector<Mesh> working_;              // the meshes that the logs are about, where they are not the original's
+  std::vector<Mat4d> placings_;            // one a mesh: where its errors are judged
+  std::vector<std::uint32_t> uses_;        // how often each mesh is drawn
+  std::vector<CollapseLog> logs_;          // one a mesh; empty for a mesh that is not drawn
+  std::vector<simplify::ThinParts> thin_;  // one a mesh; empty unless parts may vanish
+  std::vector<std::vector<std::uint8_t>> untouched_;  // triangles of each mesh that must not change; empty = none
+  std::vector<Step> steps_;
+  std::vector<std::size_t> drawn_after_;  // size() + 1 entries, never rising
   simplify::LockCounts locked_;
+  bool prunes_ = false, keep_area_ = false;
 };
 
 }  // namespace lodestone::chain::detail

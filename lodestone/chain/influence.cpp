@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace lodestone::chain {
 
@@ -46,6 +47,8 @@ Result<void> add_attribute(const Mesh& mesh, const AttributeStream& stream, std:
   return {};
 }
 
+bool holds(const InfluenceSphere& s, Vec3d p) { return length_sq(p - s.center) <= s.radius * s.radius; }
+
 void add_spheres(const Model& model, std::size_t mesh_index, const std::vector<InfluenceSphere>& spheres,
                  VertexInfluence& out) {
   const Mesh& mesh = model.meshes[mesh_index];
@@ -56,7 +59,7 @@ void add_spheres(const Model& model, std::size_t mesh_index, const std::vector<I
     for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
       const Vec3d p = instance.transform.point(mesh.position(v));
       for (const InfluenceSphere& s : spheres) {
-        if (!(length_sq(p - s.center) <= s.radius * s.radius)) continue;
+        if (!holds(s, p)) continue;
         if (s.locked) out.locked[v] = 1;
         if (!s.locked) inside[v] = std::max(inside[v], static_cast<float>(std::min(s.weight, 1e30)));
       }
@@ -71,7 +74,12 @@ void add_spheres(const Model& model, std::size_t mesh_index, const std::vector<I
 
 Result<std::vector<VertexInfluence>> vertex_influences(const Model& model, const Influence& influence) {
   std::vector<VertexInfluence> out(model.meshes.size());
-  if (!influence.weighs()) return out;
+  const Result<std::vector<std::vector<std::uint8_t>>> untouched = untouched_triangles(model, influence);
+  if (!untouched) return fail(untouched.error());
+  for (std::size_t m = 0; m < untouched->size(); ++m) {
+    out[m].locked = vertices_of_triangles(model.meshes[m], (*untouched)[m]);
+  }
+  if (influence.spheres.empty() && influence.weight_attribute.empty()) return out;
   bool found = influence.weight_attribute.empty();
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
     const Mesh& mesh = model.meshes[m];
@@ -89,6 +97,53 @@ Result<std::vector<VertexInfluence>> vertex_influences(const Model& model, const
                 names_of(model));
   }
   return out;
+}
+
+Result<std::vector<std::vector<std::uint8_t>>> untouched_triangles(const Model& model, const Influence& influence) {
+  std::vector<std::vector<std::uint8_t>> out;
+  if (influence.only.empty()) return out;
+  std::uint64_t all = 0;
+  for (const Mesh& mesh : model.meshes) all += mesh.triangles.size();
+  std::vector<std::uint8_t> untouched(static_cast<std::size_t>(all), 1);
+  for (const TriangleRange& range : influence.only) {
+    if (range.first > range.last || range.last >= all) {
+      return fail(ErrorCode::bad_argument, fmt::format("there are no triangles {} to {}", range.first, range.last), {},
+                  fmt::format("the model has {}, counted from 0", all));
+    }
+    std::fill(untouched.begin() + static_cast<std::ptrdiff_t>(range.first),
+              untouched.begin() + static_cast<std::ptrdiff_t>(range.last) + 1, std::uint8_t{0});
+  }
+  auto next = untouched.begin();
+  for (const Mesh& mesh : model.meshes) {
+    const auto end = next + static_cast<std::ptrdiff_t>(mesh.triangles.size());
+    out.emplace_back(next, end);
+    next = end;
+  }
+  return out;
+}
+
+std::vector<std::uint8_t> vertices_of_triangles(const Mesh& mesh, const std::vector<std::uint8_t>& marked) {
+  std::vector<std::uint8_t> out;
+  if (marked.empty()) return out;
+  out.assign(mesh.vertex_count(), 0);
+  for (std::size_t t = 0; t < marked.size(); ++t) {
+    if (marked[t] == 0) continue;
+    for (const std::uint32_t v : mesh.vertices_of(t)) out[v] = 1;
+  }
+  return out;
+}
+
+std::vector<std::size_t> empty_spheres(const Model& model, const std::vector<InfluenceSphere>& spheres) {
+  std::vector<std::size_t> empty(spheres.size());
+  std::iota(empty.begin(), empty.end(), std::size_t{0});
+  for (const Instance& instance : model.instances) {
+    const Mesh& mesh = model.meshes[instance.mesh];
+    for (std::uint32_t v = 0; v < mesh.vertex_count() && !empty.empty(); ++v) {
+      const Vec3d p = instance.transform.point(mesh.position(v));
+      std::erase_if(empty, [&](std::size_t s) { return holds(spheres[s], p); });
+    }
+  }
+  return empty;
 }
 
 }  // namespace lodestone::chain

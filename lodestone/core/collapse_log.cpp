@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "lodestone/base/check.h"
 #include "lodestone/base/parallel.h"
@@ -47,8 +48,11 @@ Fates fates_after(const Mesh& mesh, const CollapseLog& log, std::size_t count) {
   return fates;
 }
 
+bool has(const std::vector<std::uint8_t>& flags, std::size_t i) { return !flags.empty() && flags[i] != 0; }
+
 // Triangles that keep three different vertices, with their wedges replaced.
-void keep_triangles(const Mesh& mesh, const CollapseLog& log, const Fates& fates, ReplayResult& out, const Task& task) {
+void keep_triangles(const Mesh& mesh, const CollapseLog& log, const Fates& fates, const ReplayOptions& options,
+                    ReplayResult& out, const Task& task) {
   const std::size_t n = mesh.triangles.size();
   const std::size_t chunks = (n + kChunk - 1) / kChunk;
   std::vector<std::uint32_t> start(chunks, 0);
@@ -59,6 +63,8 @@ void keep_triangles(const Mesh& mesh, const CollapseLog& log, const Fates& fates
       const Triangle v = mesh.vertices_of(t);
       const std::uint32_t a = fates.vertex[v[0]], b = fates.vertex[v[1]], c = fates.vertex[v[2]];
       if (a == b || b == c || c == a) keep[t] = 0;
+      if (has(options.left_out, t)) keep[t] = 0;
+      if (has(options.untouched, t)) keep[t] = 1;
       start[chunk] += keep[t];
     }
   });
@@ -158,15 +164,20 @@ void compact(const Mesh& mesh, const CollapseLog& log, std::size_t count, Replay
 }  // namespace
 
 Result<ReplayResult> replay(const Mesh& mesh, const CollapseLog& log, std::size_t count, Task task) {
+  return replay(mesh, log, count, ReplayOptions{}, std::move(task));
+}
+
+Result<ReplayResult> replay(const Mesh& mesh, const CollapseLog& log, std::size_t count, const ReplayOptions& options,
+                            Task task) {
   LODESTONE_CHECK(count <= log.collapses.size(), "a prefix is not longer than the log");
   ReplayResult out;
   out.mesh.name = mesh.name;
   out.mesh.offset = mesh.offset;
   out.mesh.groups = mesh.groups;
-  keep_triangles(mesh, log, fates_after(mesh, log, count), out, task);
+  keep_triangles(mesh, log, fates_after(mesh, log, count), options, out, task);
   if (task.cancelled()) return cancelled_error("replaying collapses");
   compact(mesh, log, count, out);
-  if (count > 0) repair_corner_normals(mesh, out.origin, out.mesh);
+  if (count > 0) repair_corner_normals(mesh, out.origin, out.mesh, options.untouched);
   if (task.cancelled()) return cancelled_error("replaying collapses");
   return out;
 }

@@ -50,9 +50,18 @@ struct ReplayResult {
   std::vector<std::uint32_t> origin;  ///< for each triangle, the input triangle that it descends from
 };
 
+/// What else becomes of triangles. One entry an input triangle, non-zero = yes; empty = none.
+struct ReplayOptions {
+  std::vector<std::uint8_t> left_out;   ///< not in the result: its part has vanished
+  std::vector<std::uint8_t> untouched;  ///< as it was to the bit, though degenerate or doubled; its vertices must have
+                                        ///< been locked in the run
+};
+
 /// Applies the first `count` collapses of `log` to `mesh`, the mesh that the log was made from. Attributes: blended
 /// ones interpolated, normals and tangents unit again, weights pruned to the sets there are and summing to one. O(mesh
 /// + count). Errors: cancelled.
 Result<ReplayResult> replay(const Mesh& mesh, const CollapseLog& log, std::size_t count, Task task = {});
+Result<ReplayResult> replay(const Mesh& mesh, const CollapseLog& log, std::size_t count, const ReplayOptions& options,
+                            Task task = {});
 
 }  // namespace lodestone

@@ -79,11 +79,13 @@ void set_corner_normal(Mesh& mesh, std::size_t triangle, std::size_t corner, Vec
   for (std::size_t k = 0; k < 3; ++k) normals[wedge * 3 + k] = normal[k];
 }
 
-void make_tangents_orthogonal(Mesh& mesh) {
+// Wedges with `kept` set stay as they are.
+void make_tangents_orthogonal(Mesh& mesh, const std::vector<std::uint8_t>& kept) {
   std::vector<float>* tangents = float_stream(mesh, Semantic::tangent, 4);
   const std::vector<float>* normals = float_stream(mesh, Semantic::normal, 3);
   if (tangents == nullptr || normals == nullptr) return;
   for (std::uint32_t w = 0; w < mesh.wedge_count(); ++w) {
+    if (w < kept.size() && kept[w] != 0) continue;  // wedges added above are past the end
     float* t = tangents->data() + w * 4;
     const Vec3f n = normal_at(*normals, w), before{t[0], t[1], t[2]};
     const Vec3f straight = normalized(before - n * dot(n, before));
@@ -94,14 +96,21 @@ void make_tangents_orthogonal(Mesh& mesh) {
 
 }  // namespace
 
-void repair_corner_normals(const Mesh& original, const std::vector<std::uint32_t>& origin, Mesh& mesh) {
+void repair_corner_normals(const Mesh& original, const std::vector<std::uint32_t>& origin, Mesh& mesh,
+                           const std::vector<std::uint8_t>& untouched) {
   const std::vector<float>* original_normals = float_stream(original, Semantic::normal, 3);
   if (original_normals == nullptr) return;
   std::vector<std::uint32_t> users(mesh.wedge_count(), 0);
   for (const Triangle& t : mesh.triangles) {
     for (const std::uint32_t w : t) ++users[w];
   }
+  std::vector<std::uint8_t> kept(untouched.empty() ? 0 : mesh.wedge_count(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (untouched.empty() || untouched[origin[t]] == 0) continue;
+    for (const std::uint32_t w : mesh.triangles[t]) kept[w] = 1;
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!untouched.empty() && untouched[origin[t]] != 0) continue;
     const Vec3f n = face_normal(mesh, t);
     if (n == Vec3f{}) continue;
     if (is_backward(original, *original_normals, origin[t])) continue;
@@ -112,7 +121,7 @@ void repair_corner_normals(const Mesh& original, const std::vector<std::uint32_t
       if (wrong) set_corner_normal(mesh, t, k, n, users);
     }
   }
-  make_tangents_orthogonal(mesh);
+  make_tangents_orthogonal(mesh, kept);
 }
 
 }  // namespace lodestone

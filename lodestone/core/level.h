@@ -36,9 +36,10 @@ struct LevelError {
 struct Level {
   Model model;
   LevelError error;
-  std::size_t triangles = 0;  ///< drawn, all instances
-  std::string method;         ///< how it was made: "original", "edge collapse"
-  double seconds = 0;         ///< wall time to make and measure it
+  std::size_t triangles = 0;       ///< drawn, all instances
+  std::size_t vanished_parts = 0;  ///< drawn pieces of the original that have nothing left here
+  std::string method;              ///< how it was made: "original", "edge collapse"
+  double seconds = 0;              ///< wall time to make and measure it
 };
 
 /// levels[0] is the original itself (error 0); its model is left empty and `original` used instead.

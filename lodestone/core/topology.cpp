@@ -5,6 +5,7 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/core/adjacency.h"
+#include "lodestone/core/parts.h"
 #include "lodestone/math/triangle.h"
 
 namespace lodestone {
@@ -16,21 +17,6 @@ bool repeats_vertex(const Triangle& v) { return v[0] == v[1] || v[1] == v[2] || 
 std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t v) {
   while (parent[v] != v) v = parent[v] = parent[parent[v]];
   return v;
-}
-
-std::uint64_t count_components(const Mesh& mesh, const std::vector<std::uint8_t>& used) {
-  std::vector<std::uint32_t> parent(mesh.vertex_count());
-  std::iota(parent.begin(), parent.end(), 0U);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Triangle v = mesh.vertices_of(t);
-    if (repeats_vertex(v)) continue;
-    const std::uint32_t a = find_root(parent, v[0]);
-    parent[find_root(parent, v[1])] = a;
-    parent[find_root(parent, v[2])] = a;
-  }
-  std::uint64_t roots = 0;
-  for (std::uint32_t v = 0; v < parent.size(); ++v) roots += used[v] == 1 && parent[v] == v ? 1 : 0;
-  return roots;
 }
 
 std::uint64_t count_duplicates(const Mesh& mesh, const Task& task) {
@@ -119,7 +105,7 @@ Topology topology_of(const Mesh& mesh, const Task& task) {
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
     if (used[v] == 1 && !is_manifold_vertex(mesh, v, stars.of(v), ids, links)) ++out.nonmanifold_vertices;
   }
-  out.components = count_components(mesh, used);
+  out.components = parts_of(mesh).count;
   out.closed = out.edges > 0 && out.boundary_edges == 0;
   out.manifold = out.edges > 0 && out.nonmanifold_edges == 0 && out.nonmanifold_vertices == 0;
   return out;

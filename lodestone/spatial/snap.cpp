@@ -62,13 +62,18 @@ class Cells {
 
 }  // namespace
 
-Result<std::size_t> snap_positions(std::vector<Vec3f>& positions, double tolerance, Task task) {
+Result<std::size_t> snap_positions(std::vector<Vec3f>& positions, double tolerance,
+                                   const std::vector<std::uint8_t>& fixed, Task task) {
   if (!(tolerance > 0) || !std::isfinite(tolerance)) {
     return fail(ErrorCode::bad_argument, "the welding tolerance is not a length above 0", "welding");
   }
   Cells cells(positions, tolerance);
   std::size_t moved = 0;
+  for (std::uint32_t v = 0; v < fixed.size(); ++v) {
+    if (fixed[v] != 0) cells.add(v);
+  }
   for (std::uint32_t v = 0; v < positions.size(); ++v) {
+    if (!fixed.empty() && fixed[v] != 0) continue;
     if (v % 65536 == 0 && task.cancelled()) return cancelled_error("welding");
     const std::uint32_t near = cells.nearest(to_double(positions[v]), tolerance);
     if (near == kNone) {

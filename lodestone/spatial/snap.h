@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "lodestone/base/result.h"
@@ -11,9 +12,10 @@
 namespace lodestone::spatial {
 
 /// Each position, in order, takes the place of the nearest earlier one within `tolerance` that kept its own (the first
-/// of equally near ones); so nothing moves farther than the tolerance, and chains of near points don't creep. Returns
-/// how many moved. Expected O(n), memory 24 bytes a position. Errors: bad_argument (tolerance not above 0 or not
-/// finite), cancelled.
-Result<std::size_t> snap_positions(std::vector<Vec3f>& positions, double tolerance, Task task = {});
+/// of equally near ones); so nothing moves farther than the tolerance, and chains of near points don't creep. Those
+/// with `fixed` set (one entry a position; empty = none) come first and all keep their own. Returns how many moved.
+/// Expected O(n), memory 24 bytes a position. Errors: bad_argument (tolerance not above 0 or not finite), cancelled.
+Result<std::size_t> snap_positions(std::vector<Vec3f>& positions, double tolerance,
+                                   const std::vector<std::uint8_t>& fixed = {}, Task task = {});
 
 }  // namespace lodestone::spatial

@@ -55,5 +55,33 @@ TEST(Influence, attributes_give_weights_or_say_what_there_is) {
   EXPECT_FALSE(vertex_influences(make_model(with_values(test::torus(8), -1)), influence));
 }
 
+TEST(Influence, spheres_that_hold_nothing_are_named) {
+  Model model = make_model(test::torus(8));
+  model.instances[0].transform = Mat4d::translation({100, 0, 0});
+  const std::vector<InfluenceSphere> spheres{
+      {{0, 0, 0}, 5, 2, false}, {{100, 0, 0}, 5, 2, false}, {{7, 0, 0}, 1, 1, true}};
+  EXPECT_EQ(empty_spheres(model, spheres), (std::vector<std::size_t>{0, 2}));
+  EXPECT_TRUE(empty_spheres(model, {}).empty());
+}
+
+TEST(Influence, triangles_are_counted_over_all_meshes) {
+  Model model = make_model(test::tetrahedron());
+  model.meshes.push_back(test::cube());
+  Influence influence;
+  EXPECT_TRUE(untouched_triangles(model, influence)->empty());
+  influence.only = {{3, 5}, {15, 15}};
+  const auto r = untouched_triangles(model, influence);
+  ASSERT_TRUE(r);
+  EXPECT_EQ(r->at(0), (std::vector<std::uint8_t>{1, 1, 1, 0}));
+  EXPECT_EQ(r->at(1), (std::vector<std::uint8_t>{0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0}));
+  const auto told = vertex_influences(model, influence);
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->at(0).locked, (std::vector<std::uint8_t>{1, 1, 1, 1}));
+  influence.only = {{0, 16}};
+  EXPECT_EQ(untouched_triangles(model, influence).error().code, ErrorCode::bad_argument);
+  influence.only = {{2, 1}};
+  EXPECT_EQ(vertex_influences(model, influence).error().code, ErrorCode::bad_argument);
+}
+
 }  // namespace
 }  // namespace lodestone::chain

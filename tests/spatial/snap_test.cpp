@@ -35,6 +35,13 @@ TEST(Snap, a_chain_of_near_points_does_not_creep) {
   for (int i = 0; i < 10; ++i) EXPECT_EQ(points[static_cast<std::size_t>(i)].x, static_cast<float>(i - i % 2) * 0.75F);
 }
 
+TEST(Snap, fixed_points_keep_their_places_and_the_others_come) {
+  std::vector<Vec3f> points{{0, 0, 0}, {0.5F, 0, 0}, {0.9F, 0, 0}, {5, 0, 0}};
+  const std::vector<Vec3f> before = points;
+  ASSERT_TRUE(snap_positions(points, 1, {0, 1, 1, 0}));
+  EXPECT_EQ(points, (std::vector<Vec3f>{before[1], before[1], before[2], before[3]}));
+}
+
 TEST(Snap, far_and_tiny_is_no_trouble) {
   std::vector<Vec3f> points{{3e38F, 0, 0}, {3e38F, 0, 0}, {1e-40F, 0, 0}, {0, 0, 0}};
   ASSERT_TRUE(snap_positions(points, 1e-30));

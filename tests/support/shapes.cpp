@@ -173,6 +173,25 @@ Mesh soup(unsigned seed, int vertices, int triangles) {
   return mesh;
 }
 
+Mesh canopy(int leaves) {
+  Mesh mesh = sphere(8);  // 224 triangles, drawn out to a column
+  for (Vec3f& p : mesh.positions) p = {p.x * 0.1F, p.y * 0.1F, p.z * 2};
+  std::uint64_t counter = 0;
+  const auto random = [&] { return static_cast<float>(random_unit(11, counter++)) * 2 - 1; };
+  for (int i = 0; i < leaves; ++i) {
+    Vec3f at{2, 2, 2};
+    while (length_sq(at) > 1) at = {random(), random(), random()};
+    const Vec3f u = normalized(Vec3f{random(), random(), random()}) * 0.05F;
+    const Vec3f v = normalized(cross(u, Vec3f{random(), random(), random()})) * 0.05F;
+    const Vec3f c = at * 1.5F + Vec3f{0, 0, 3};
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Vec3f& corner : {c - u - v, c + u - v, c + u + v, c - u + v}) mesh.positions.push_back(corner);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+  }
+  return mesh;
+}
+
 std::vector<Shape> small_shapes() {
   return {
       {"tetrahedron", tetrahedron, true},

@@ -26,6 +26,10 @@ Mesh offset_plates(int cells);  ///< unit squares at z = 0 and z = 1e-3, opposit
 Mesh soup(unsigned seed, int vertices,
           int triangles);  ///< random triangles on few vertices: non-manifold, degenerate, doubled
 
+/// A trunk (a closed column of 224 triangles, 4 high) and `leaves` leaves of two triangles and side 0.1 about its top,
+/// turned at random, each a part of its own.
+Mesh canopy(int leaves);
+
 struct Shape {
   std::string name;
   std::function<Mesh()> make;
