@@ -1,5 +1,5 @@
 # Short names for the scripts under tools/, which also run where make is not installed yet.
-.PHONY: demo test check bench bench-peers
+.PHONY: demo test check bench bench-peers bench-attributes
 demo:
 	@tools/demo "$(IN)"
 test:
@@ -10,3 +10,5 @@ bench:
 	@IN="$(IN)" tools/bench
 bench-peers:
 	@tools/bench_peers
+bench-attributes:
+	@tools/bench_attributes

@@ -129,6 +129,38 @@ std::string to_json(const SimplifyReport& report) {
   return text_of(json);
 }
 
+Json deviation_json(const measure::Deviation& d) {
+  return {{"mean", d.mean},  {"rms", d.rms}, {"max", d.max}, {"median", d.median}, {"percentile_95", d.percentile_95},
+          {"share", d.share}};
+}
+
+Json figure_json(const measure::AttributeFigure& figure) {
+  Json json = deviation_json(figure.both);
+  json["forward"] = deviation_json(figure.forward);
+  json["backward"] = deviation_json(figure.backward);
+  return json;
+}
+
+Json attributes_json(const measure::Attributes& attributes) {
+  Json json;
+  json["normal_degrees"] = figure_json(attributes.normal);
+  json["uv"] = Json::array();
+  for (const measure::UvFigure& uv : attributes.uv) {
+    Json one = figure_json(uv.distance);
+    one["set"] = uv.set;
+    one["diagonal"] = uv.diagonal;
+    one["relative_mean"] = uv.relative(uv.distance.both.mean);
+    one["relative_rms"] = uv.relative(uv.distance.both.rms);
+    one["relative_max"] = uv.relative(uv.distance.both.max);
+    json["uv"].push_back(std::move(one));
+  }
+  json["color"] = attributes.color ? figure_json(*attributes.color) : Json(nullptr);
+  json["look"] = attributes.look ? figure_json(*attributes.look) : Json(nullptr);
+  json["samples"] = attributes.samples;
+  json["notes"] = attributes.notes;
+  return json;
+}
+
 std::string to_json(const MeasureReport& report) {
   const measure::Distance& d = report.distance;
   Json json;
@@ -146,6 +178,7 @@ std::string to_json(const MeasureReport& report) {
   json["normal_degrees"] = d.normal_degrees;
   json["diagonal"] = d.diagonal;
   json["unit"] = unit_or_null(report.unit);
+  if (report.attributes) json["attributes"] = attributes_json(*report.attributes);
   json["seconds"] = report.seconds;
   return text_of(json);
 }

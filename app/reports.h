@@ -10,6 +10,7 @@
 #include "lodestone/chain/build_ladder.h"
 #include "lodestone/core/level.h"
 #include "lodestone/core/topology.h"
+#include "lodestone/measure/attributes.h"
 #include "lodestone/measure/distance.h"
 
 namespace lodestone::app {
@@ -54,6 +55,7 @@ struct SimplifyReport {
 struct MeasureReport {
   std::string a, b, unit;
   measure::Distance distance;
+  std::optional<measure::Attributes> attributes;  ///< with --attributes
   double seconds = 0;
 };
 

@@ -124,6 +124,20 @@ OptionGroup measuring_group(std::uint64_t samples) {
             Completion::none}}};
 }
 
+OptionGroup attribute_group() {
+  return {
+      "Attributes",
+      {{"--attributes",
+        "",
+        "",
+        "",
+        "",
+        "a second table: normals, UVs, vertex colours, and colours as shown",
+        {},
+        Completion::none},
+       {"--uv-set", "", "N", "", "", "of UVs this set alone (TEXCOORD_N); needs --attributes", {}, Completion::none}}};
+}
+
 OptionGroup output_group(bool compress) {
   OptionGroup group{"Output",
                     {{"--output", "-o", "OUTPUT", "", "", "file to write; never an input", {}, Completion::file}}};

@@ -20,6 +20,7 @@ OptionGroup single_target_group();  ///< --ratio, --triangles, --error (simplify
 OptionGroup length_group();         ///< --unit, --absolute
 OptionGroup unit_group();           ///< --unit
 OptionGroup measuring_group(std::uint64_t samples);  ///< --samples, --seed
+OptionGroup attribute_group();                       ///< --attributes, --uv-set
 OptionGroup output_group(bool compress);             ///< -o, --compress, --json
 OptionGroup result_group();                          ///< --json alone
 OptionGroup general_group();                         ///< --threads, --quiet, --verbose, --help

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "lodestone/core/pixels.h"
+
 namespace lodestone {
 
 /// An image file as found, not decoded.
@@ -17,12 +19,21 @@ struct Image {
   std::vector<std::byte> encoded;  ///< the file's bytes; empty when it was missing (then a warning was given)
 };
 
+/// Where a material's texture looks: (u, v) of a set, then the affine map of KHR_texture_transform.
+struct TextureCoordinates {
+  std::uint32_t set = 0;
+  std::array<double, 6> map{1, 0, 0, 0, 1, 0};  ///< u' = m0 u + m1 v + m2, v' = m3 u + m4 v + m5
+};
+
 struct Material {
   std::string name;
   std::array<float, 4> base_color{1, 1, 1, 1};  ///< linear RGBA factor
   float metallic = 0;
   float roughness = 1;
   std::shared_ptr<const Image> base_color_texture;  ///< may be null
+  TextureCoordinates base_color_coordinates;
+  /// The texture decoded; null until io::decode_base_colors() was asked for it, or where it can't be decoded.
+  std::shared_ptr<const Pixels> base_color_pixels;
   bool double_sided = false;
 };
 

@@ -1,6 +1,7 @@
 // Materials of a glTF document, as far as drawing and other formats need them; writing glTF uses the document itself.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "lodestone/io/gltf_detail.h"
 
@@ -22,10 +23,22 @@ Named named_element(const Json& object, const char* key, const Json& array) {
   return {&array[static_cast<std::size_t>(index)], static_cast<std::size_t>(index)};
 }
 
+// The object of an extension, or null.
+const Json* extension_of(const Json& object, const char* name) {
+  const Json* all = member(object, "extensions");
+  return all != nullptr ? member(*all, name) : nullptr;
+}
+
 std::shared_ptr<const Image> read_texture(const Document::Data& data, const Json& info) {
   const Named texture = named_element(info, "index", array_member(data.json, "textures"));
   if (texture.json == nullptr) return nullptr;
-  const Named image = named_element(*texture.json, "source", array_member(data.json, "images"));
+  const Json& images = array_member(data.json, "images");
+  Named image = named_element(*texture.json, "source", images);
+  if (image.json == nullptr) {
+    if (const Json* webp = extension_of(*texture.json, "EXT_texture_webp"); webp != nullptr) {
+      image = named_element(*webp, "source", images);
+    }
+  }
   if (image.json == nullptr) return nullptr;
   const ImageBytes bytes = image_bytes(data, image.index);
   auto out = std::make_shared<Image>();
@@ -35,6 +48,30 @@ std::shared_ptr<const Image> read_texture(const Document::Data& data, const Json
   out->mime = bytes.mime;
   const auto raw = std::as_bytes(std::span(bytes.bytes));
   out->encoded.assign(raw.begin(), raw.end());
+  return out;
+}
+
+TextureCoordinates read_coordinates(const Json& info) {
+  TextureCoordinates out;
+  const auto set_of = [&](const Json& json) {
+    if (const Json* value = member(json, "texCoord"); value != nullptr) {
+      out.set = static_cast<std::uint32_t>(std::min<std::uint64_t>(as_uint(*value).value_or(0), 0xFFFF));
+    }
+  };
+  set_of(info);
+  const Json* transform = extension_of(info, "KHR_texture_transform");
+  if (transform == nullptr) return out;
+  set_of(*transform);
+  std::array<double, 2> offset{0, 0}, scale{1, 1};
+  if (!numbers_member(*transform, "offset", offset, "")) offset = {0, 0};
+  if (!numbers_member(*transform, "scale", scale, "")) scale = {1, 1};
+  double cosine = 1, sine = 0;
+  if (const Json* angle = member(*transform, "rotation"); angle != nullptr && angle->is_number()) {
+    // For looking at textures only: what is written keeps the document's own numbers.
+    cosine = std::cos(angle->get<double>());
+    sine = std::sin(angle->get<double>());
+  }
+  out.map = {scale[0] * cosine, scale[1] * sine, offset[0], -scale[0] * sine, scale[1] * cosine, offset[1]};
   return out;
 }
 
@@ -58,6 +95,7 @@ Material read_material(const Document::Data& data, const Json& json) {
   material.roughness = number("roughnessFactor", 1);
   if (const Json* texture = member(*pbr, "baseColorTexture"); texture != nullptr) {
     material.base_color_texture = read_texture(data, *texture);
+    material.base_color_coordinates = read_coordinates(*texture);
   }
   return material;
 }

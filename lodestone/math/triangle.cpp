@@ -64,4 +64,27 @@ ClosestPoint closest_point(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
   return found(a + ab * (vb / denominator) + ac * (vc / denominator));
 }
 
+std::array<double, 3> barycentric(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
+  const Vec3d n = cross(b - a, c - a);
+  const double l = length_sq(n);
+  const std::array<double, 3> sides{length_sq(c - b), length_sq(a - c), length_sq(b - a)};
+  const double longest = std::max({sides[0], sides[1], sides[2]});
+  if (l > 1e-24 * longest * longest) {
+    std::array<double, 3> w{dot(cross(b - p, c - p), n), dot(cross(c - p, a - p), n), dot(cross(a - p, b - p), n)};
+    for (double& x : w) x = std::max(x, 0.0);
+    const double sum = w[0] + w[1] + w[2];
+    if (sum > 0) return {w[0] / sum, w[1] / sum, w[2] / sum};
+  }
+  if (!(longest > 0)) return {1, 0, 0};
+  // Without area: along the longest side.
+  const std::array<Vec3d, 3> corners{a, b, c};
+  const std::size_t k = sides[0] == longest ? 0 : sides[1] == longest ? 1 : 2;  // the corner across from it
+  const Vec3d from = corners[(k + 1) % 3], to = corners[(k + 2) % 3];
+  const double t = std::clamp(dot(p - from, to - from) / longest, 0.0, 1.0);
+  std::array<double, 3> w{};
+  w[(k + 1) % 3] = 1 - t;
+  w[(k + 2) % 3] = t;
+  return w;
+}
+
 }  // namespace lodestone

@@ -1,6 +1,8 @@
 // Triangles: area, normal, closest point.
 #pragma once
 
+#include <array>
+
 #include "lodestone/math/vec.h"
 
 namespace lodestone {
@@ -19,5 +21,9 @@ struct ClosestPoint {
   double distance_sq;
 };
 ClosestPoint closest_point(Vec3d p, Vec3d a, Vec3d b, Vec3d c);
+
+/// Weights of a, b and c, none negative, sum 1, whose mean is a point p of the triangle. For a p that is off the
+/// triangle by rounding, and for a triangle without area, those of a point near it.
+std::array<double, 3> barycentric(Vec3d p, Vec3d a, Vec3d b, Vec3d c);
 
 }  // namespace lodestone

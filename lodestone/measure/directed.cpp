@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "lodestone/base/parallel.h"
-#include "lodestone/base/random.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/measure/directed_detail.h"
+#include "lodestone/measure/sampling_detail.h"
 
 namespace lodestone::measure::detail {
 
@@ -63,51 +63,29 @@ Sums join(Sums a, const Sums& b) {
   return a;
 }
 
-// Running sum of the triangles' areas: triangle t covers [sums[t], sums[t + 1]).
-std::vector<double> area_sums(const spatial::Surface& surface) {
-  std::vector<double> sums(surface.triangles.size() + 1, 0);
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto [a, b, c] = surface.corners(t);
-    sums[t + 1] = sums[t] + length(scaled_normal(a, b, c)) / 2;
-  }
-  return sums;
-}
-
 Vec3d unit_normal(const spatial::Surface& surface, std::uint32_t triangle) {
   const auto [a, b, c] = surface.corners(triangle);
   return normalized(scaled_normal(a, b, c));
 }
 
-// Samples begin..end of `count`: the i-th lies in the i-th of `count` equal shares of the area, at random within its
-// triangle.
-Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const std::vector<double>& areas,
-                     std::uint64_t count, std::uint64_t seed, std::size_t begin, std::size_t end) {
+Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const Sampler& sampler, std::size_t begin,
+                     std::size_t end) {
   Sums sums;
-  std::size_t t = 0;
   std::uint32_t hint = kNone;
-  for (std::size_t i = begin; i < end; ++i) {
-    const double place =
-        (static_cast<double>(i) + random_unit(seed, 3 * i)) / static_cast<double>(count) * areas.back();
-    if (i == begin)
-      t = static_cast<std::size_t>(std::upper_bound(areas.begin(), areas.end(), place) - areas.begin()) - 1;
-    while (t + 2 < areas.size() && areas[t + 1] <= place) ++t;
-    t = std::min(t, from.triangles.size() - 1);
-    const auto [a, b, c] = from.corners(t);
-    const double r = std::sqrt(random_unit(seed, 3 * i + 1)), s = random_unit(seed, 3 * i + 2);
-    const Vec3d p = a * (1 - r) + b * (r * (1 - s)) + c * (r * s);
-    const spatial::Nearest nearest = to.closest(p, hint);
+  sampler.for_each(begin, end, [&](std::size_t, const Sample& sample) {
+    const spatial::Nearest nearest = to.closest(sample.point, hint);
     hint = nearest.triangle;
     sums.distance += std::sqrt(nearest.distance_sq);
     sums.distance_sq += nearest.distance_sq;
     ++sums.samples;
-    const Vec3d n = unit_normal(from, static_cast<std::uint32_t>(t)), m = unit_normal(to.surface(), nearest.triangle);
+    const Vec3d n = unit_normal(from, sample.triangle), m = unit_normal(to.surface(), nearest.triangle);
     if (n != Vec3d{} && m != Vec3d{}) {
       // acos is not the same on every machine; this angle is for reading only, nothing is decided by it.
       sums.degrees += std::acos(std::clamp(dot(n, m), -1.0, 1.0)) * 180 / std::numbers::pi;
       ++sums.with_normal;
     }
-    sums.peaks.add({nearest.distance_sq, static_cast<std::uint32_t>(t), p});
-  }
+    sums.peaks.add({nearest.distance_sq, sample.triangle, sample.point});
+  });
   return sums;
 }
 
@@ -185,14 +163,13 @@ Peak sharpen(const spatial::Surface& from, const spatial::Bvh& to, const Peaks& 
 
 DirectedDistance directed_distance(const spatial::Surface& from, const spatial::Bvh& to, const DistanceOptions& options,
                                    const Task& task) {
-  const std::vector<double> areas = area_sums(from);
-  const bool has_area = areas.back() > 0;
-  const std::uint64_t samples = has_area ? options.samples : 0;
+  const Sampler sampler(from, options.samples, options.seed);
+  const std::uint64_t samples = sampler.count();
   const Task sampling = task.part(0.7);
   Sums sums = parallel_reduce(
       samples, kChunk, sampling, Sums{},
       [&](std::size_t begin, std::size_t end) {
-        Sums part = measure_samples(from, to, areas, samples, options.seed, begin, end);
+        Sums part = measure_samples(from, to, sampler, begin, end);
         sampling.advance(static_cast<double>(end - begin) / static_cast<double>(samples));
         return part;
       },

@@ -18,7 +18,7 @@
 namespace lodestone::simplify {
 
 /// What attributes count when edges are chosen, each a multiple of its default; 0 = they follow without a say. By
-/// default a texture that slides over the surface counts like a displacement of the same length, the whole range of a
+/// default a texture that slides over the surface counts like a displacement of 0.3 times as much, the whole range of a
 /// colour or a number like a displacement of 1 % of the diagonal (`color` is the weight alpha of paper 004), a normal
 /// that turns by one radian like 0.2 % of it, and a displacement of a morph target like any other.
 struct AttributeWeights {

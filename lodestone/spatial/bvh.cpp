@@ -97,17 +97,16 @@ Nearest Bvh::test(Vec3d p, std::uint32_t triangle) const {
   return {triangle, found.point, found.distance_sq};
 }
 
-Nearest Bvh::closest(Vec3d p, std::uint32_t hint) const {
-  Nearest best;
-  if (hint != kNone) best = test(p, hint);
+template <class Take>
+void Bvh::search(Vec3d p, const double& limit_sq, Take&& take) const {
   const Vec3d local = (p - center_) * scale_;
-  if (!(length_sq(local) < 1e24)) return test(p, 0);  // so far away that double can't tell one triangle from another
+  if (!(length_sq(local) < 1e24)) return take(0U);  // so far away that double can't tell one triangle from another
   const Vec3f q = to_float(local);
   const Float4 x{q.x, q.x, q.x, q.x}, y{q.y, q.y, q.y, q.y}, z{q.z, q.z, q.z, q.z};
   // Squared float distances are off by a few 1e-7 of themselves; q's own rounding is in the margin while it is near,
   // and relative to the distance when it is far.
   const double to_local = scale_ * scale_ * 1.000002;
-  const auto limit = [&] { return static_cast<float>(std::min(best.distance_sq * to_local, 3e37)); };
+  const auto limit = [&] { return static_cast<float>(std::min(limit_sq * to_local, 3e37)); };
   float worst = limit();
   Visit stack[96];
   std::size_t top = 0;
@@ -116,12 +115,8 @@ Nearest Bvh::closest(Vec3d p, std::uint32_t hint) const {
     const Visit visit = stack[--top];
     if (visit.distance_sq > worst) continue;
     if (visit.level == 0) {
-      const Nearest found = test(p, visit.index);
-      if (found.distance_sq < best.distance_sq ||
-          (found.distance_sq == best.distance_sq && found.triangle < best.triangle)) {
-        best = found;
-        worst = limit();
-      }
+      take(visit.index);
+      worst = limit();
       continue;
     }
     const Node& node = nodes_[level_first_[visit.level - 1] + visit.index];
@@ -141,7 +136,42 @@ Nearest Bvh::closest(Vec3d p, std::uint32_t hint) const {
       stack[place] = {d[slot], visit.level - 1, visit.index * 4 + slot};
     }
   }
+}
+
+Nearest Bvh::closest(Vec3d p, std::uint32_t hint) const {
+  Nearest best;
+  if (hint != kNone) best = test(p, hint);
+  search(p, best.distance_sq, [&](std::uint32_t triangle) {
+    const Nearest found = test(p, triangle);
+    if (found.distance_sq < best.distance_sq ||
+        (found.distance_sq == best.distance_sq && found.triangle < best.triangle)) {
+      best = found;
+    }
+  });
   return best;
+}
+
+Nearest Bvh::closest_facing(Vec3d p, Vec3d normal, double within) const {
+  Nearest best;
+  best.distance_sq = within * within;
+  search(p, best.distance_sq, [&](std::uint32_t triangle) {
+    const auto [a, b, c] = surface_.corners(triangle);
+    if (!(dot(scaled_normal(a, b, c), normal) > 0)) return;
+    const Nearest found = test(p, triangle);
+    if (found.distance_sq < best.distance_sq ||
+        (found.distance_sq == best.distance_sq && found.triangle < best.triangle)) {
+      best = found;
+    }
+  });
+  return best;
+}
+
+void Bvh::all_within(Vec3d p, double within, std::vector<Nearest>& found) const {
+  const double limit_sq = within * within;
+  search(p, limit_sq, [&](std::uint32_t triangle) {
+    const Nearest one = test(p, triangle);
+    if (one.distance_sq <= limit_sq) found.push_back(one);
+  });
 }
 
 }  // namespace lodestone::spatial

@@ -29,6 +29,13 @@ class Bvh {
   /// meets.
   Nearest closest(Vec3d p, std::uint32_t hint = kNone) const;
 
+  /// As closest(), of the triangles alone whose normal is within 90 degrees of `normal` and that are no farther
+  /// than `within`; triangle = kNone where there is none.
+  Nearest closest_facing(Vec3d p, Vec3d normal, double within) const;
+
+  /// All triangles not farther than `within`, appended to `found`. Their order depends on the surface alone.
+  void all_within(Vec3d p, double within, std::vector<Nearest>& found) const;
+
   const Surface& surface() const { return surface_; }
 
  private:
@@ -37,6 +44,10 @@ class Bvh {
     float min[3][4], max[3][4];
   };
   Nearest test(Vec3d p, std::uint32_t triangle) const;
+  // Visits triangles, near ones first, and calls take(triangle) for each whose box is within limit_sq, which it may
+  // lower.
+  template <class Take>
+  void search(Vec3d p, const double& limit_sq, Take&& take) const;
 
   const Surface& surface_;
   Vec3d center_;                            // boxes are relative to it,

@@ -54,6 +54,7 @@ void reorder(Surface& surface, const std::vector<Key>& keys) {
   std::vector<std::uint32_t> name(surface.positions.size(), kNone);
   std::vector<Vec3d> positions;
   positions.reserve(surface.positions.size());
+  surface.drawn.reserve(keys.size());
   for (const Key& key : keys) {
     Triangle t = surface.triangles[key.triangle];
     for (std::uint32_t& v : t) {
@@ -64,6 +65,7 @@ void reorder(Surface& surface, const std::vector<Key>& keys) {
       v = name[v];
     }
     triangles.push_back(t);
+    surface.drawn.push_back(key.triangle);
   }
   surface.triangles = std::move(triangles);
   surface.positions = std::move(positions);

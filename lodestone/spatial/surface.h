@@ -18,6 +18,8 @@ namespace lodestone::spatial {
 struct Surface {
   std::vector<Vec3d> positions;     ///< world space
   std::vector<Triangle> triangles;  ///< indices into positions
+  /// Each triangle's number among all that the scene draws, instance after instance: the way back to its attributes.
+  std::vector<std::uint32_t> drawn;
   Box3d bounds;
 
   std::array<Vec3d, 3> corners(std::size_t triangle) const {
@@ -26,7 +28,8 @@ struct Surface {
   }
 };
 
-/// Flattens the default scene: all instances, bind pose; a mirrored instance keeps its faces outward. O(n log n).
+/// Flattens the default scene: all instances, bind pose; a mirrored instance keeps its faces outward (its second
+/// and third corners change places). O(n log n).
 /// Errors: empty, cancelled.
 Result<Surface> flatten(const Model& model, Task task = {});
 

@@ -55,6 +55,30 @@ class Json(Scratch):
         same = self.json("measure", "statue.ply", "statue.ply", "--samples", "1000")
         self.assertLess(same["relative_max"], 1e-7)
 
+    def test_measure_attributes(self):
+        self.lod("sample", "terrain", "--triangles", "4000", "-o", "terrain.glb")
+        self.lod("simplify", "terrain.glb", "-o", "a.glb", "--triangles", "500")
+        plain = self.json("measure", "terrain.glb", "a.glb", "--samples", "20000")
+        self.assertNotIn("attributes", plain)
+        found = self.json("measure", "terrain.glb", "a.glb", "--samples", "20000", "--attributes")["attributes"]
+        self.assertLessEqual({"normal_degrees", "uv", "color", "look", "samples", "notes"}, set(found))
+        figures = {"mean", "rms", "max", "median", "percentile_95", "share", "forward", "backward"}
+        self.assertLessEqual(figures | {"set", "diagonal", "relative_mean"}, set(found["uv"][0]))
+        self.assertLessEqual(figures, set(found["normal_degrees"]))
+        self.assertLess(0, found["uv"][0]["mean"])
+        same = self.json("measure", "terrain.glb", "terrain.glb", "--samples", "1000", "--attributes", "--uv-set", "0")
+        self.assertLess(same["attributes"]["uv"][0]["max"], 1e-6)
+        table = self.lod("measure", "terrain.glb", "a.glb", "--samples", "1000", "--attributes").stdout
+        self.assertRegex(table, r"(?m)^UV set 0 ")
+
+    def test_measure_attributes_that_are_not_there(self):
+        self.lod("sample", "terrain", "--triangles", "500", "-o", "terrain.glb")
+        with_sets = ("measure", "terrain.glb", "terrain.glb", "--samples", "100")
+        self.assert_error(self.lod(*with_sets, "--uv-set", "0", code=2), "--attributes")
+        self.assert_error(self.lod(*with_sets, "--attributes", "--uv-set", "3", code=2), "no UV set 3", "it has: 0")
+        none = self.json("measure", "statue.ply", "statue.ply", "--samples", "100", "--attributes")["attributes"]
+        self.assertEqual((none["uv"], none["color"], none["look"], none["notes"]), ([], None, None, []))
+
     def test_info(self):
         report = self.json("info", "statue.ply")
         promised = {"vertices", "wedges", "triangles", "components", "boundary_edges", "nonmanifold_edges", "duplicate_faces",

@@ -92,5 +92,23 @@ TEST(Mat, products_act_right_to_left) {
   EXPECT_LT(Mat4d::scale({-1, 1, 1}).determinant3(), 0);
 }
 
+TEST(Triangle, barycentric_weights_give_the_point_back) {
+  std::uint64_t k = 0;
+  const auto next = [&] { return random_unit(9, k++) * 2 - 1; };
+  for (int i = 0; i < 300; ++i) {
+    const Vec3d a{next(), next(), next()}, b{next(), next(), next()};
+    // Every third has no area: on a line, or a point.
+    const Vec3d c = i % 3 > 0 ? Vec3d{next(), next(), next()} : i % 2 > 0 ? lerp(a, b, 0.3) : a;
+    const double u = random_unit(10, k), v = random_unit(11, k) * (1 - u);
+    const Vec3d p = a * (1 - u - v) + b * u + c * v;
+    const std::array<double, 3> w = barycentric(p, a, b, c);
+    EXPECT_NEAR(length(a * w[0] + b * w[1] + c * w[2] - p), 0, 1e-9);
+    EXPECT_NEAR(w[0] + w[1] + w[2], 1, 1e-12);
+    EXPECT_GE(std::min({w[0], w[1], w[2]}), 0);
+  }
+  const std::array<double, 3> point = barycentric({1, 2, 3}, {}, {}, {});
+  EXPECT_EQ(point, (std::array<double, 3>{1, 0, 0}));
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -52,6 +52,41 @@ TEST(Bvh, sizes_do_not_matter) {
   }
 }
 
+TEST(Bvh, all_within_finds_what_all_triangles_would) {
+  for (const test::Shape& shape : test::small_shapes()) {
+    SCOPED_TRACE(shape.name);
+    const auto surface = flatten(make_model(shape.make()));
+    ASSERT_TRUE(surface);
+    const Bvh tree(*surface);
+    for (std::uint64_t i = 0; i < 50; ++i) {
+      const Vec3d p = surface->bounds.center() + Vec3d{random_unit(3, 3 * i) - 0.5, random_unit(3, 3 * i + 1) - 0.5,
+                                                       random_unit(3, 3 * i + 2) - 0.5} *
+                                                     surface->bounds.diagonal();
+      const double within = surface->bounds.diagonal() * random_unit(4, i) * 0.5;
+      std::vector<Nearest> found;
+      tree.all_within(p, within, found);
+      std::size_t expected = 0;
+      double facing = within * within;
+      bool any = false;
+      for (std::size_t t = 0; t < surface->triangles.size(); ++t) {
+        const auto [a, b, c] = surface->corners(t);
+        const double d = closest_point(p, a, b, c).distance_sq;
+        expected += d <= within * within ? 1 : 0;
+        if (d <= facing && scaled_normal(a, b, c).z > 0) {
+          facing = d;
+          any = true;
+        }
+      }
+      EXPECT_EQ(found.size(), expected);
+      const Nearest up = tree.closest_facing(p, {0, 0, 1}, within);
+      EXPECT_EQ(up.triangle != kNone, any);
+      if (any) {
+        EXPECT_EQ(up.distance_sq, facing);
+      }
+    }
+  }
+}
+
 TEST(Surface, instances_and_mirrors) {
   Model model = make_model(test::cube());
   model.instances.push_back({0, Mat4d::translation({5, 0, 0}) * Mat4d::scale({-1, 1, 1}), "mirrored"});
