@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "app/attributes.h"
 #include "app/text.h"
 #include "lodestone/base/file.h"
 #include "lodestone/base/units.h"
@@ -206,6 +207,7 @@ Result<InfluencePlan> influence_of(const Arguments& arguments, const LengthRules
   if (arguments.has("--only")) {
     if (const Result<void> ok = read_only(arguments.text("--only"), plan); !ok) return fail(ok.error());
   }
+  if (const Result<void> ok = read_attribute_options(arguments, plan.influence); !ok) return fail(ok.error());
   Result<std::optional<LengthArgument>> weld = one_length(arguments, "--weld", lengths);
   if (!weld) return fail(weld.error());
   plan.weld = std::move(*weld);
@@ -220,6 +222,7 @@ Result<chain::Influence> InfluencePlan::for_model(const Model& model, std::vecto
   for (const std::size_t sphere : chain::empty_spheres(model, influence.spheres)) {
     warnings.push_back(fmt::format("{}: this sphere holds no vertex", sphere_places[sphere]));
   }
+  tell_of_attributes(model, influence, warnings);
   std::uint64_t triangles = 0;
   for (const Mesh& mesh : model.meshes) triangles += mesh.triangles.size();
   for (std::size_t i = 0; i < influence.only.size(); ++i) {

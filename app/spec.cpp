@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/attributes.h"
 #include "app/influence.h"
 #include "app/shared_options.h"
 #include "app/verbs.h"
@@ -19,8 +20,8 @@ VerbSpec build_spec() {
       "build",
       "Makes a ladder of levels from a model and measures each level's error against the original.",
       {"INPUT...", 1, kAnyNumber, {}, Completion::file},
-      {ladder_target_group(), view_group(), length_group(), method_group(), measuring_group(kBuildSamples),
-       output_group(true), general_group()},
+      {ladder_target_group(), view_group(), length_group(), method_group(), level_attributes_group(),
+       measuring_group(kBuildSamples), output_group(true), general_group()},
       {{"lod build statue.ply -o statue.glb", "five levels in one GLB (MSFT_lod), each with half the triangles"},
        {"lod build statue.ply -o statue_LOD{level}.obj --error 0.05%,0.2%,1%",
         "a file a level, each within a measured error"},
@@ -36,8 +37,8 @@ VerbSpec simplify_spec() {
   return {"simplify",
           "Makes one coarser mesh, down to a count, a share or a measured error.",
           one_model(),
-          {single_target_group(), length_group(), method_group(), measuring_group(kBuildSamples), output_group(true),
-           general_group()},
+          {single_target_group(), length_group(), method_group(), level_attributes_group(),
+           measuring_group(kBuildSamples), output_group(true), general_group()},
           {{"lod simplify statue.ply -o small.ply --triangles 5000", "at most 5,000 triangles"},
            {"lod simplify statue.ply -o small.glb --error 0.1%", "as coarse as 0.1 % of the diagonal allows"},
            {"lod simplify statue.ply -o small.obj --ratio 10% --json", "keep a tenth, figures as JSON"}},

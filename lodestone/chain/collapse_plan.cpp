@@ -8,6 +8,8 @@
 #include "lodestone/chain/working_meshes_detail.h"
 #include "lodestone/core/adjacency.h"
 #include "lodestone/core/parts.h"
+#include "lodestone/core/skin.h"
+#include "lodestone/core/tangents.h"
 #include "lodestone/simplify/grow_parts.h"
 
 namespace lodestone::chain::detail {
@@ -38,6 +40,8 @@ Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t sma
   plan.placings_ = largest_placings(original);
   plan.prunes_ = influence.vanishes();
   plan.keep_area_ = influence.keep_area;
+  plan.max_influences_ = influence.max_influences;
+  plan.tangents_ = influence.tangents;
   Result<std::vector<std::vector<std::uint8_t>>> untouched = untouched_triangles(original, influence);
   if (!untouched) return fail(untouched.error());
   plan.untouched_ = std::move(*untouched);
@@ -73,6 +77,7 @@ Result<void> CollapsePlan::plan_mesh(std::size_t m, std::size_t target, const In
   options.keep_border = influence.keep_border;
   options.weights = std::move(told.weights);
   options.locked = std::move(told.locked);
+  options.attribute_weights = influence.attribute_weights;
   options.metric = placings_[m];
   options.record_log = true;
   Result<simplify::EdgeCollapseResult> run =
@@ -230,6 +235,11 @@ Result<Mesh> CollapsePlan::mesh_after(std::size_t m, const Progress& progress, d
   if (!replayed) return fail(replayed.error());
   if (keep_area_) {
     simplify::grow_parts(mesh(m), thin, area, error, placings_[m], replayed->origin, replayed->mesh);
+  }
+  if (tangents_ == Tangents::dropped) drop_tangents(replayed->mesh);
+  if (options.untouched.empty()) {
+    if (tangents_ == Tangents::rebuilt) rebuild_tangents(replayed->mesh);
+    if (max_influences_ > 0) limit_influences(replayed->mesh, max_influences_);
   }
   return std::move(replayed->mesh);
 }

@@ -8,6 +8,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/core/model.h"
+#include "lodestone/simplify/edge_collapse.h"
 
 namespace lodestone::chain {
 
@@ -24,6 +25,13 @@ struct TriangleRange {
   std::uint64_t first = 0, last = 0;
 };
 
+/// What coarser levels have for tangents.
+enum class Tangents {
+  interpolated,  ///< those of the original, as normal maps were made for them, orthogonal to the normals
+  rebuilt,       ///< made anew from normals and texture coordinates
+  dropped,       ///< none: viewers make their own
+};
+
 struct Influence {
   std::vector<InfluenceSphere> spheres;
   std::string weight_attribute;  ///< name of a stream of one component whose values are weights; empty = none
@@ -35,6 +43,10 @@ struct Influence {
   /// The triangles that may change, counted from 0 over the model's meshes in order, each mesh once however often it is
   /// drawn; all others stay to the bit. Empty = all may.
   std::vector<TriangleRange> only;
+
+  simplify::AttributeWeights attribute_weights;
+  std::size_t max_influences = 4;  ///< skin influences of a wedge in coarser levels; 0 = as many as there are
+  Tangents tangents = Tangents::interpolated;
 
   bool vanishes() const { return prune || keep_area; }
 };

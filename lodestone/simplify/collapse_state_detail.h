@@ -355,6 +355,8 @@ class Sweeper {
   bool refresh(Candidate& candidate);
   bool link_allows(const Candidate& candidate);
   bool flips(const Candidate& candidate, bool moved);
+  bool is_fold(Vec3f n, Vec3f m) const;
+  bool folds_outwards() const;
   bool folds() const;
   template <class Normals>
   bool has_fold(std::span<const Corner> corners, Normals normals) const;

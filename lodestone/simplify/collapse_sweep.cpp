@@ -15,6 +15,9 @@ namespace {
 // A surviving triangle may turn by at most about 78 degrees.
 constexpr float kMinTurnCosineSq = 0.2F * 0.2F;
 
+// A triangle that turns by less than some 8 degrees is taken not to fold over.
+constexpr float kTurnsLittleSq = 0.98F;
+
 // No triangle may get an angle this small (0.06 degrees; sine squared) or this near 180 at the moved corner while it
 // shrinks: it would be without area once positions are rounded.
 constexpr float kNeedleSineSq = 1e-6F;
@@ -182,23 +185,45 @@ bool Sweeper::flips(const Candidate& candidate, bool moved) {
   return turns(kept_.corners, candidate.removed, moved) || turns(removed_.corners, candidate.kept, true);
 }
 
-// True if two neighbours around a vertex face each other closer than the limit. normals(i) is that of corner i.
+// True if two triangles with these normals face each other closer than the limit.
+bool Sweeper::is_fold(Vec3f n, Vec3f m) const {
+  const float d = dot(n, m);
+  return d < 0 && d * d > fold_cosine_sq_ * length_sq(n) * length_sq(m);
+}
+
+// True if two neighbours around a vertex do. normals(i) is that of corner i.
 template <class Normals>
 bool Sweeper::has_fold(std::span<const Corner> corners, Normals normals) const {
   Fan fan;
   if (!fan.load(corners)) return false;
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
     const std::uint32_t before = fan.before(corners[i].a);
-    if (before == kNone) continue;
-    const Vec3f n = normals(i), m = normals(before);
-    const float d = dot(n, m);
-    if (d < 0 && d * d > fold_cosine_sq_ * length_sq(n) * length_sq(m)) return true;
+    if (before != kNone && is_fold(normals(i), normals(before))) return true;
+  }
+  return false;
+}
+
+// True if a triangle that turns folds over the edge that lies across the new vertex.
+bool Sweeper::folds_outwards() const {
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const Corner& c = corners_[i];
+    const Vec3f before = state_.normals[c.triangle].n, after = normals_[i];
+    const float d = dot(before, after);
+    if (d > 0 && d * d > kTurnsLittleSq * length_sq(before) * length_sq(after)) continue;
+    bool fold = false;
+    state_.each_in_star(c.a, [&](std::uint32_t t) {
+      const Triangle& v = state_.triangles[t];
+      if (t == c.triangle || (v[0] != c.b && v[1] != c.b && v[2] != c.b)) return;
+      fold = fold || (is_fold(state_.normals[t].n, after) && !is_fold(state_.normals[t].n, before));
+    });
+    if (fold) return true;
   }
   return false;
 }
 
 // True if the collapse folds the surface (paper 001, section 3.2: no dihedral angle below a limit) where it was not.
 bool Sweeper::folds() const {
+  if (folds_outwards()) return true;
   if (!has_fold(corners_, [&](std::size_t i) { return normals_[i]; })) return false;
   for (const std::span<const Corner> corners : {kept_.corners, removed_.corners}) {
     if (has_fold(corners, [&](std::size_t i) { return state_.normals[corners[i].triangle].n; })) return false;
