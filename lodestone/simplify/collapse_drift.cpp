@@ -79,19 +79,27 @@ void FanDistance::pad() {
   while (size_ % 4 != 0) add(leaf_[0]);
 }
 
-float FanDistance::drift_at(Vec3f q, float apex_drift) const {
+bool FanDistance::drift_above(Vec3f q, float apex_drift, float& drift) const {
   const Vec4 p{fill(q.x), fill(q.y), fill(q.z)};
   const Float4 zero{}, apex = fill(apex_drift);
   Nearest nearest;
-  for (std::size_t i = 0; i < size_; i += 4) {  // above or below a triangle
+  for (std::size_t i = 0; i < size_; i += 4) {
     const Leaves l(&leaf_[i]);
     const Float4 u = dot(cross(p, l.b), l.n) * l.inverse, v = dot(cross(l.a, p), l.n) * l.inverse;
     const Float4 w = 1.0F - u - v, h = dot(l.n, p);
     const Mask inside = (u >= zero) & (v >= zero) & (w >= zero) & (l.inverse > zero);
     nearest.offer(inside ? h * h * l.inverse : fill(3e38F), apex * w + l.drift_a * u + l.drift_b * v);
   }
-  if (nearest.found()) return nearest.total();
-  for (std::size_t i = 0; i < size_; i += 4) {  // else nearest to an edge
+  if (!nearest.found()) return false;
+  drift = nearest.total();
+  return true;
+}
+
+float FanDistance::drift_at_edges(Vec3f q, float apex_drift) const {
+  const Vec4 p{fill(q.x), fill(q.y), fill(q.z)};
+  const Float4 apex = fill(apex_drift);
+  Nearest nearest;
+  for (std::size_t i = 0; i < size_; i += 4) {
     const Leaves l(&leaf_[i]);
     offer_segment(nearest, p, l.a, apex, l.drift_a);
     offer_segment(nearest, p, l.b, apex, l.drift_b);
@@ -100,23 +108,39 @@ float FanDistance::drift_at(Vec3f q, float apex_drift) const {
   return nearest.total();
 }
 
+float FanDistance::drift_at(Vec3f q, float apex_drift) const {
+  float drift = 0;
+  return drift_above(q, apex_drift, drift) ? drift : drift_at_edges(q, apex_drift);
+}
+
 // About how far from the input the surface is after a collapse.
-float Sweeper::drift_after(const Candidate& candidate) {
+float Sweeper::drift_after(const Candidate& candidate, float enough) {
   const std::vector<Vec3f>& positions = state_.positions;
   const std::vector<float>& drift = state_.drift;
-  const auto from_old = [&](std::uint32_t v, std::span<const Corner> corners) {
+  const std::uint32_t k = candidate.kept, r = candidate.removed;
+  const Vec3f from_k = candidate.position - positions[k], from_r = candidate.position - positions[r];
+  const auto load = [&](std::uint32_t v) {
     fan_.clear();
-    for (const Corner& c : corners) {
+    for (const Corner& c : v == k ? kept_.corners : removed_.corners) {
       const TriangleNormal& t = state_.normals[c.triangle];
       const float inverse = t.inverse_root * t.inverse_root;
       fan_.add({positions[c.a] - positions[v], drift[c.a], positions[c.b] - positions[v], drift[c.b], t.n,
                 inverse * inverse});
     }
     fan_.pad();
-    return fan_.drift_at(candidate.position - positions[v], drift[v]);
   };
-  const std::uint32_t k = candidate.kept, r = candidate.removed;
-  float most = std::min(from_old(k, kept_.corners), from_old(r, removed_.corners));
+  // Most positions are above or below a triangle of the end that they are nearer to.
+  const bool nearer_k = length_sq(from_k) <= length_sq(from_r);
+  const std::uint32_t near = nearer_k ? k : r, far = nearer_k ? r : k;
+  const Vec3f from_near = nearer_k ? from_k : from_r, from_far = nearer_k ? from_r : from_k;
+  float most = 0;
+  load(near);
+  const bool above = fan_.drift_above(from_near, drift[near], most);
+  if (!above) most = fan_.drift_at_edges(from_near, drift[near]);
+  if (!above || most > enough) {
+    load(far);
+    most = std::min(most, fan_.drift_at(from_far, drift[far]));
+  }
   fan_.clear();
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     const float l = length_sq(normals_[i]);

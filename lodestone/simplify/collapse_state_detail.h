@@ -247,17 +247,10 @@ class EdgeEvaluator {
   /// left out. Quadrics of all ends must be up to date.
   template <class Wanted>
   void add_edges(std::uint32_t v, std::span<const Corner> corners, Wanted wanted) {
-    spokes_.clear();
-    bool closed = state_.classes[v] == VertexClass::interior && fan_.load(corners);
-    for (std::size_t i = 0; i < corners.size() && closed; ++i) {
-      if (!wanted(corners[i].a)) continue;
-      const std::uint32_t other = fan_.before(corners[i].a);
-      closed = other != kNone;
-      if (closed) spokes_.push_back({corners[i].a, {corners[i].triangle, corners[other].triangle}, 2});
-    }
-    if (!closed) collect_spokes(corners);
+    if (state_.classes[v] == VertexClass::interior && add_spokes_of_fan(v, corners, wanted)) return;
+    collect_spokes(corners);
     for (const Spoke& spoke : spokes_) {
-      if (closed || wanted(spoke.neighbour)) add(v, spoke);
+      if (wanted(spoke.neighbour)) add(v, spoke);
     }
   }
   /// One edge with its triangles among the corners of `removed`.
@@ -275,6 +268,27 @@ class EdgeEvaluator {
     std::uint32_t triangles[2];
     std::uint32_t count;
   };
+  // False = not one closed fan of few triangles; then nothing has been added.
+  template <class Wanted>
+  bool add_spokes_of_fan(std::uint32_t v, std::span<const Corner> corners, Wanted wanted) {
+    if (!fan_.load(corners)) return false;
+    std::array<std::uint32_t, 16> before;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      before[i] = fan_.before(corners[i].a);
+      if (before[i] == kNone) return false;
+    }
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const std::uint32_t u = corners[i].a;
+      if (!wanted(u)) continue;
+      const std::uint32_t first = corners[i].triangle, second = corners[before[i]].triangle;
+      if (state_.classes[u] == VertexClass::interior && ((state_.zone[v] | state_.zone[u]) & kHeavy) == 0) {
+        add_free(v, u, first, second);
+      } else {
+        add(v, {u, {first, second}, 2});
+      }
+    }
+    return true;
+  }
   void collect_spokes(std::span<const Corner> corners);
   void add(std::uint32_t v, const Spoke& spoke);
   void add_free(std::uint32_t v, std::uint32_t w, std::uint32_t first, std::uint32_t second);
@@ -316,8 +330,12 @@ class FanDistance {
   }
   /// Call once all triangles are added.
   void pad();
-  /// Distance from q (relative to the apex) to the nearest point of the fan that is above or below a triangle, or if
-  /// there is none to the nearest of its edges, and the drift there, interpolated. At least one triangle.
+  /// Distance from q (relative to the apex) to the nearest triangle that it is above or below, and the drift there,
+  /// interpolated. False = there is none.
+  bool drift_above(Vec3f q, float apex_drift, float& drift) const;
+  /// The same to the nearest edge. At least one triangle.
+  float drift_at_edges(Vec3f q, float apex_drift) const;
+  /// The one or the other.
   float drift_at(Vec3f q, float apex_drift) const;
 
  private:
@@ -362,7 +380,7 @@ class Sweeper {
   bool has_fold(std::span<const Corner> corners, Normals normals) const;
   bool pair_wedges(const Candidate& candidate, bool moved);
   std::uint32_t nearest_normal(std::uint32_t wedge, std::uint32_t chart) const;
-  float drift_after(const Candidate& candidate);
+  float drift_after(const Candidate& candidate, float enough);
   void record(const Candidate& candidate, bool moved, float error);
   float blend_wedges(const Candidate& candidate, bool moved);
   void blend_by_place(const Candidate& candidate);
@@ -389,7 +407,8 @@ class Sweeper {
   Star kept_, removed_;
   std::vector<Corner> kept_memory_, removed_memory_, corners_;  // corners_: of the new vertex,
   FanDistance fan_;
-  std::vector<Vec3f> normals_;                                  // whose triangles get these normals
+  std::vector<Vec3f> normals_;                                  // whose triangles get these normals,
+  std::vector<std::uint8_t> turns_;                             // non-zero where that turns them more than a little
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // wedge of removed, wedge of kept
   std::size_t across_ = 0;                                      // of these, how many are across the edge's triangles
   std::vector<std::uint32_t> kept_wedges_;

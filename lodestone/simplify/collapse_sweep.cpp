@@ -164,6 +164,7 @@ bool Sweeper::link_allows(const Candidate& candidate) {
 bool Sweeper::flips(const Candidate& candidate, bool moved) {
   corners_.clear();
   normals_.clear();
+  turns_.clear();
   const Vec3f to = candidate.position;
   const auto turns = [&](std::span<const Corner> corners, std::uint32_t other, bool moves) {
     for (const Corner& c : corners) {
@@ -171,13 +172,16 @@ bool Sweeper::flips(const Candidate& candidate, bool moved) {
       const Vec3f before = state_.normals[c.triangle].n;
       corners_.push_back(c);
       normals_.push_back(before);
+      turns_.push_back(0);
       if (!moves) continue;
       const Vec3f a = state_.positions[c.a] - to, b = state_.positions[c.b] - to, after = cross(a, b);
       normals_.back() = after;
       const float before_sq = length_sq(before), after_sq = length_sq(after);
       if (before_sq == 0) continue;
       const float d = dot(before, after);
-      if (!(d > 0 && d * d > kMinTurnCosineSq * before_sq * after_sq)) return true;
+      const float squares = before_sq * after_sq;
+      if (!(d > 0 && d * d > kMinTurnCosineSq * squares)) return true;
+      turns_.back() = d * d > kTurnsLittleSq * squares ? 0 : 1;
       if (after_sq < kNeedleSineSq * length_sq(a) * length_sq(b) && after_sq < before_sq) return true;
     }
     return false;
@@ -206,10 +210,9 @@ bool Sweeper::has_fold(std::span<const Corner> corners, Normals normals) const {
 // True if a triangle that turns folds over the edge that lies across the new vertex.
 bool Sweeper::folds_outwards() const {
   for (std::size_t i = 0; i < corners_.size(); ++i) {
+    if (turns_[i] == 0) continue;
     const Corner& c = corners_[i];
     const Vec3f before = state_.normals[c.triangle].n, after = normals_[i];
-    const float d = dot(before, after);
-    if (d > 0 && d * d > kTurnsLittleSq * length_sq(before) * length_sq(after)) continue;
     bool fold = false;
     state_.each_in_star(c.a, [&](std::uint32_t t) {
       const Triangle& v = state_.triangles[t];
@@ -329,8 +332,9 @@ void Sweeper::try_collapse(Candidate candidate) {
   if (kept_.corners.size() > kMaxValence || !link_allows(candidate)) return;
   const bool moved = state_.classes[k] == state_.classes[r];
   if (flips(candidate, moved) || folds()) return;
-  const float drift = drift_after(candidate), weight = state_.weight_of(k, r);
-  float cost = std::max(candidate.cost, kDriftWeight * state_.mean_weight * drift * drift * weight);
+  const float weight = state_.weight_of(k, r), drift_scale = kDriftWeight * state_.mean_weight * weight;
+  const float drift = drift_after(candidate, std::sqrt(candidate.cost / drift_scale));
+  float cost = std::max(candidate.cost, drift_scale * drift * drift);
   float error = drift;
   if (!state_.wedges.empty()) {
     if (!pair_wedges(candidate, moved)) return;
