@@ -23,7 +23,7 @@ void add_line(Quadric& q, Vec3f d) {
   q.yy += weight * (l - d.y * d.y);
   q.zz += weight * (l - d.z * d.z);
   q.xy -= weight * d.x * d.y;
-  q.xz -= weight * d.x * d.z;
+  q.zx -= weight * d.x * d.z;
   q.yz -= weight * d.y * d.z;
 }
 
@@ -48,9 +48,8 @@ void add_lines(const State& state, std::uint32_t v, Quadric& q) {
   }
 }
 
-Quadric quadric_of(const State& state, std::uint32_t v) {
-  // Diagonal (xx, yy, zz) and the rest (xy, yz, zx) of the sum of n n^T / sqrt(|n|), and the sum of n; fourth lanes are
-  // idle.
+void renew_position_quadric(State& state, std::uint32_t v) {
+  // Diagonal (xx, yy, zz) and the rest (xy, yz, zx) of the sum of n n^T / sqrt(|n|), and the sum of n.
   Float4 diagonal{}, rest{}, sum{};
   state.each_in_star(v, [&](std::uint32_t t) {
     const Float4 n = load(state.normals[t]), scaled = n * __builtin_shufflevector(n, n, 3, 3, 3, 3);
@@ -58,14 +57,20 @@ Quadric quadric_of(const State& state, std::uint32_t v) {
     rest += scaled * __builtin_shufflevector(n, n, 1, 2, 0, 3);
     sum += n;
   });
-  Quadric q{diagonal[0],       rest[0], rest[2], diagonal[1], rest[1], diagonal[2], {sum[0], sum[1], sum[2]},
-            state.positions[v]};
-  if (state.classes[v] == VertexClass::feature) add_lines(state, v, q);
-  return q;
+  const Vec3f p = state.positions[v];
+  diagonal[3] = p.x;
+  rest[3] = p.y;
+  sum[3] = p.z;
+  auto* rows = reinterpret_cast<Float4*>(&state.quadrics[v]);
+  rows[0] = diagonal;
+  rows[1] = rest;
+  rows[2] = sum;
 }
 
 struct QuadricLanes {
   Float4 f[12];  // the members of Quadric in order, four quadrics side by side
+
+  Sym3<Float4> matrix() const { return {f[0], f[4], f[6], f[1], f[5], f[2]}; }
 };
 
 QuadricLanes load_four(const State& state, const std::array<std::uint32_t, 4>& vertices) {
@@ -85,7 +90,8 @@ QuadricLanes load_four(const State& state, const std::array<std::uint32_t, 4>& v
 }  // namespace
 
 void renew_quadric(State& state, std::uint32_t v) {
-  state.quadrics[v] = quadric_of(state, v);
+  renew_position_quadric(state, v);
+  if (state.classes[v] == VertexClass::feature) add_lines(state, v, state.quadrics[v]);
   if (state.attributes.blocks > 0) renew_attribute_quadrics(state, v);
 }
 
@@ -168,11 +174,11 @@ void EdgeEvaluator::flush() {
   }
   const QuadricLanes v = load_four(state_, v_), w = load_four(state_, w_);
   EdgeTerms<Float4> terms;
-  terms.a0 = {v.f[0], v.f[1], v.f[2], v.f[3], v.f[4], v.f[5]};
-  terms.a1 = {w.f[0], w.f[1], w.f[2], w.f[3], w.f[4], w.f[5]};
-  terms.g0 = {v.f[6], v.f[7], v.f[8]};
-  terms.g1 = {w.f[6], w.f[7], w.f[8]};
-  terms.edge = {w.f[9] - v.f[9], w.f[10] - v.f[10], w.f[11] - v.f[11]};
+  terms.a0 = v.matrix();
+  terms.a1 = w.matrix();
+  terms.g0 = {v.f[8], v.f[9], v.f[10]};
+  terms.g1 = {w.f[8], w.f[9], w.f[10]};
+  terms.edge = {w.f[3] - v.f[3], w.f[7] - v.f[7], w.f[11] - v.f[11]};
   for (std::size_t t = 0; t < 2; ++t) {
     const std::array<std::uint32_t, 4>& triangles = t == 0 ? first_ : second_;
     Float4 rows[4];
@@ -182,7 +188,7 @@ void EdgeEvaluator::flush() {
     terms.inverse_root[t] = rows[3];
   }
   const EdgePlacement<Float4> p = place_freely(terms);
-  const Float4 x = v.f[9] + p.position.x, y = v.f[10] + p.position.y, z = v.f[11] + p.position.z;
+  const Float4 x = v.f[3] + p.position.x, y = v.f[7] + p.position.y, z = v.f[11] + p.position.z;
   for (std::size_t i = 0; i < waiting_; ++i) {
     Candidate& candidate = out_[place_[i]];
     candidate.position = {x[i], y[i], z[i]};

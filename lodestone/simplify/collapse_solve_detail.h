@@ -119,15 +119,15 @@ struct Placement {
   float cost = 0;
 };
 
-inline Sym3<float> matrix_of(const Quadric& q) { return {q.xx, q.xy, q.xz, q.yy, q.yz, q.zz}; }
+inline Sym3<float> matrix_of(const Quadric& q) { return {q.xx, q.xy, q.zx, q.yy, q.yz, q.zz}; }
 
 /// `kept` stays where it is.
 inline Placement place_at(const Quadric& kept, const Quadric& removed) {
   const Sym3<float> a = matrix_of(removed);
-  const Vec3f e = kept.position - removed.position;
+  const Vec3f e = kept.position() - removed.position();
   const Vec<float> d{e.x, e.y, e.z};
   const float cost = dot(d, times(a, d));
-  return {kept.position, cost > 0 ? cost : 0};
+  return {kept.position(), cost > 0 ? cost : 0};
 }
 
 }  // namespace lodestone::simplify::detail

@@ -56,9 +56,12 @@ inline TriangleNormal triangle_normal(Vec3f a, Vec3f b, Vec3f c) { return weighe
 /// 1998). Each triangle counts n n^T / sqrt(|n|), n being its cross product: squared distance times twice the area to
 /// the power of 1.5. 48 bytes.
 struct alignas(16) Quadric {
-  float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-  Vec3f volume;    ///< sum of n: moving the vertex by d changes the volume by (volume . d) / 6
-  Vec3f position;  ///< the vertex
+  float xx = 0, yy = 0, zz = 0, x = 0;  // x, y, z: the vertex
+  float xy = 0, yz = 0, zx = 0, y = 0;
+  Vec3f volume;  ///< sum of n: moving the vertex by d changes the volume by (volume . d) / 6
+  float z = 0;
+
+  Vec3f position() const { return {x, y, z}; }
 };
 
 /// One accepted collapse, in the working frame.
