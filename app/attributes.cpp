@@ -20,7 +20,7 @@ bool read_weight(const std::string& word, simplify::AttributeWeights& weights) {
   float weight = 0;
   const char* end = word.data() + word.size();
   const auto [stop, error] = std::from_chars(word.data() + equals + 1, end, weight);
-  if (error != std::errc{} || stop != end || !std::isfinite(weight) || weight < 0) return false;
+  if (error != std::errc{} || stop != end || !(weight >= 0 && weight <= 1e6F)) return false;
   const std::string name = word.substr(0, equals);
   const std::pair<const char*, float*> kinds[] = {{"normal", &weights.normal},
                                                   {"uv", &weights.uv},
@@ -72,12 +72,17 @@ Result<void> read_attribute_options(const Arguments& arguments, chain::Influence
     for (const std::string& word : split_commas(arguments.text("--attribute-weights"))) {
       if (read_weight(word, influence.attribute_weights)) continue;
       return fail(ErrorCode::bad_argument, fmt::format("--attribute-weights: '{}' is no weight", printable(word)), {},
-                  "write NAME=W, W 0 or more, such as uv=2,color=0.5");
+                  "write NAME=W, W from 0 to 1000000, such as uv=2,color=0.5");
     }
   }
   const Result<std::uint64_t> influences = arguments.count("--influences");
   if (!influences) return fail(influences.error());
   influence.max_influences = *influences;
+  for (const char* option : {"--influences", "--tangents"}) {
+    if (!arguments.has(option) || !arguments.has("--only")) continue;
+    return fail(ErrorCode::bad_argument, fmt::format("{} does not go with --only", option), {},
+                "leave one of them out: --only keeps all other triangles to the bit");
+  }
   const std::string tangents = arguments.text("--tangents");
   if (tangents == "rebuild") influence.tangents = chain::Tangents::rebuilt;
   if (tangents == "drop") influence.tangents = chain::Tangents::dropped;
@@ -87,11 +92,11 @@ Result<void> read_attribute_options(const Arguments& arguments, chain::Influence
 void tell_of_attributes(const Model& model, const chain::Influence& influence, std::vector<std::string>& warnings) {
   std::size_t cut = 0;
   for (const Mesh& mesh : model.meshes) {
-    cut += influence.max_influences > 0 ? wedges_above(mesh, influence.max_influences) : 0;
+    cut += influence.max_influences > 0 && influence.only.empty() ? wedges_above(mesh, influence.max_influences) : 0;
   }
   if (cut > 0) {
     warnings.push_back(
-        fmt::format("{} corners have more than {} skin influences; coarser levels keep the heaviest "
+        fmt::format("on {} corners more joints pull than {}; coarser levels keep the heaviest "
                     "(--influences 0 keeps all)",
                     with_separators(cut), influence.max_influences));
   }

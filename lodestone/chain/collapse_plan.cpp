@@ -236,8 +236,8 @@ Result<Mesh> CollapsePlan::mesh_after(std::size_t m, const Progress& progress, d
   if (keep_area_) {
     simplify::grow_parts(mesh(m), thin, area, error, placings_[m], replayed->origin, replayed->mesh);
   }
-  if (tangents_ == Tangents::dropped) drop_tangents(replayed->mesh);
   if (options.untouched.empty()) {
+    if (tangents_ == Tangents::dropped) drop_tangents(replayed->mesh);
     if (tangents_ == Tangents::rebuilt) rebuild_tangents(replayed->mesh);
     if (max_influences_ > 0) limit_influences(replayed->mesh, max_influences_);
   }

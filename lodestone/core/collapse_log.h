@@ -16,7 +16,7 @@ struct Collapse {
   std::uint32_t kept = 0, removed = 0;  ///< vertices of the original mesh
   Vec3f position;                       ///< of `kept` from now on, relative to Mesh::offset
   Vec3f kept_before;                    ///< of `kept` until now: what undoing needs (`removed` stays where it was)
-  float error = 0;                      ///< estimated, model units, never falling along the log
+  float error = 0;                      ///< estimated (shape and attributes), model units, never falling along the log
   std::uint32_t first_wedge = 0;        ///< start of this collapse's entries in CollapseLog::wedges (none for a mesh
                                         ///< without wedges of its own and attributes)
   std::uint32_t faces = 0;              ///< triangles that vanish with it

@@ -8,30 +8,35 @@ namespace lodestone {
 
 namespace {
 
+template <class Stream>
 struct Set {
-  AttributeStream *joints, *weights;
+  Stream *joints, *weights;
 };
+template <class Stream>
+using Sets = std::vector<Set<Stream>>;
 
-// JOINTS_n with WEIGHTS_n, in order.
-std::vector<Set> sets_of(Mesh& mesh) {
-  std::vector<Set> sets;
-  for (AttributeStream& j : mesh.attributes) {
+// JOINTS_n with WEIGHTS_n, in order. Stream is AttributeStream, const or not.
+template <class Stream, class Streams>
+Sets<Stream> sets_of(Streams& streams) {
+  Sets<Stream> sets;
+  for (Stream& j : streams) {
     if (j.semantic != Semantic::joints || !std::holds_alternative<std::vector<std::uint32_t>>(j.values)) continue;
-    for (AttributeStream& w : mesh.attributes) {
+    for (Stream& w : streams) {
       const bool pair = w.semantic == Semantic::weights && w.set == j.set && w.components == j.components &&
                         std::holds_alternative<std::vector<float>>(w.values);
       if (pair) sets.push_back({&j, &w});
     }
   }
-  std::sort(sets.begin(), sets.end(), [](const Set& a, const Set& b) { return a.joints->set < b.joints->set; });
+  std::sort(sets.begin(), sets.end(), [](const auto& a, const auto& b) { return a.joints->set < b.joints->set; });
   return sets;
 }
 
 using Influences = std::vector<std::pair<std::uint32_t, float>>;  // joint, weight
 
-void gather(const std::vector<Set>& sets, std::size_t wedge, Influences& out) {
+template <class Stream>
+void gather(const Sets<Stream>& sets, std::size_t wedge, Influences& out) {
   out.clear();
-  for (const Set& set : sets) {
+  for (const auto& set : sets) {
     const std::size_t n = set.joints->components;
     const auto& joints = std::get<std::vector<std::uint32_t>>(set.joints->values);
     const auto& weights = std::get<std::vector<float>>(set.weights->values);
@@ -41,9 +46,9 @@ void gather(const std::vector<Set>& sets, std::size_t wedge, Influences& out) {
   }
 }
 
-void put(const std::vector<Set>& sets, std::size_t wedge, const Influences& in) {
+void put(const Sets<AttributeStream>& sets, std::size_t wedge, const Influences& in) {
   std::size_t next = 0;
-  for (const Set& set : sets) {
+  for (const auto& set : sets) {
     const std::size_t n = set.joints->components;
     auto& joints = std::get<std::vector<std::uint32_t>>(set.joints->values);
     auto& weights = std::get<std::vector<float>>(set.weights->values);
@@ -57,8 +62,7 @@ void put(const std::vector<Set>& sets, std::size_t wedge, const Influences& in) 
 }  // namespace
 
 std::size_t wedges_above(const Mesh& mesh, std::size_t most) {
-  Mesh& readable = const_cast<Mesh&>(mesh);  // sets_of() hands out what put() writes to; nothing is written here
-  const std::vector<Set> sets = sets_of(readable);
+  const auto sets = sets_of<const AttributeStream>(mesh.attributes);
   std::size_t count = 0;
   Influences influences;
   for (std::size_t w = 0; w < mesh.wedge_count() && !sets.empty(); ++w) {
@@ -69,9 +73,10 @@ std::size_t wedges_above(const Mesh& mesh, std::size_t most) {
 }
 
 void limit_influences(Mesh& mesh, std::size_t most) {
-  const std::vector<Set> sets = sets_of(mesh);
+  if (most == 0) return;
+  const auto sets = sets_of<AttributeStream>(mesh.attributes);
   std::size_t room = 0;
-  for (const Set& set : sets) room += set.joints->components;
+  for (const auto& set : sets) room += set.joints->components;
   if (room <= most) return;
   Influences influences;
   for (std::size_t w = 0; w < mesh.wedge_count(); ++w) {
@@ -91,7 +96,7 @@ void limit_influences(Mesh& mesh, std::size_t most) {
   }
   std::size_t first = 0;
   std::vector<std::uint32_t> emptied;
-  for (const Set& set : sets) {
+  for (const auto& set : sets) {
     if (first >= most) emptied.push_back(set.joints->set);
     first += set.joints->components;
   }

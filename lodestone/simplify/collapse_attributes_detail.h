@@ -24,20 +24,29 @@ struct AttributePair {
   bool moved;                                 // false = the kept vertex stays, with its values
 };
 
-/// Squared deviation of attributes times twice the area, over the triangles of both wedges, when they merge at `to`.
+/// Squared deviation of attributes over the triangles of both wedges when they merge at `to`, each triangle weighed as
+/// for positions.
 float attribute_cost(const State& state, const AttributePair& pair, Vec3f to);
 
 /// The same for the wedges across an edge with these triangles.
 float edge_attribute_cost(const State& state, std::uint32_t kept, std::uint32_t removed, bool moved, Vec3f to,
                           std::span<const std::uint32_t> triangles);
 
-/// Twice the area of a wedge's triangles.
-inline float wedge_area(const AttributeField& field, std::uint32_t wedge) {
+/// What a wedge's triangles weigh.
+inline float wedge_weight(const AttributeField& field, std::uint32_t wedge) {
   return field.quadrics[wedge * field.stride() + 1][2];
 }
 
 /// The values that err least for a pair that merges at `to`.
 void best_values(const State& state, const AttributePair& pair, Vec3f to, std::span<Float4> values);
+
+/// Of the ways from the kept wedge's values to the removed one's and to those wanted: squared length of the first, dot
+/// product of both.
+struct Projection {
+  float along_along, along_goal;
+};
+Projection project(const AttributeField& field, std::uint32_t kept, std::uint32_t removed,
+                   std::span<const Float4> wanted);
 
 /// How a wedge gets near the values wanted: first `to_removed` of the way to the removed wedge, then `to_third` of the
 /// way to a third one, if any. Never outside of what the three span, so nothing leaves its range.

@@ -29,7 +29,7 @@ void add_line(Quadric& q, Vec3f d) {
 
 void add_lines(const State& state, std::uint32_t v, Quadric& q) {
   std::vector<Corner> memory;
-  const std::span<const Corner> corners = gather(state, v, memory).corners;
+  const std::span<const Corner> corners = gather(state, v, memory);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     for (const std::uint32_t u : {corners[i].a, corners[i].b}) {
       std::uint32_t both[2] = {corners[i].triangle, 0};
@@ -51,12 +51,12 @@ void add_lines(const State& state, std::uint32_t v, Quadric& q) {
 void renew_position_quadric(State& state, std::uint32_t v) {
   // Diagonal (xx, yy, zz) and the rest (xy, yz, zx) of the sum of n n^T / sqrt(|n|), and the sum of n.
   Float4 diagonal{}, rest{}, sum{};
-  state.each_in_star(v, [&](std::uint32_t t) {
-    const Float4 n = load(state.normals[t]), scaled = n * __builtin_shufflevector(n, n, 3, 3, 3, 3);
+  for (const std::uint32_t entry : state.star_of(v)) {
+    const Float4 n = load(state.normals[entry >> 2]), scaled = n * __builtin_shufflevector(n, n, 3, 3, 3, 3);
     diagonal += scaled * n;
     rest += scaled * __builtin_shufflevector(n, n, 1, 2, 0, 3);
     sum += n;
-  });
+  }
   const Vec3f p = state.positions[v];
   diagonal[3] = p.x;
   rest[3] = p.y;

@@ -33,7 +33,7 @@ class Fans {
 
   void look_at(std::uint32_t v) {
     v_ = v;
-    const auto star = state_.segment(v);
+    const auto star = state_.star_of(v);
     parent_.resize(star.size());
     std::iota(parent_.begin(), parent_.end(), 0U);
     spokes_.clear();
@@ -89,7 +89,7 @@ class Fans {
 
   bool is_feature(std::size_t begin, std::size_t end) const {
     if (end - begin != 2) return true;
-    const auto star = state_.segment(v_);
+    const auto star = state_.star_of(v_);
     const std::uint32_t both[2] = {star[spokes_[begin].triangle] >> 2, star[spokes_[begin + 1].triangle] >> 2};
     return is_feature_edge(state_, v_, spokes_[begin].neighbour, both);
   }
@@ -141,7 +141,7 @@ void classify_vertices(State& state, const EdgeCollapseOptions& options, const T
     std::vector<Corner> memory;
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
       Fans::Answer answer;
-      if (!is_plain(state, v, gather(state, v, memory).corners)) {
+      if (!is_plain(state, v, gather(state, v, memory))) {
         fans.look_at(v);
         answer = fans.classify();
       }

@@ -55,10 +55,11 @@ struct Nearest {
     squared = nearer ? d : squared;
     drift = nearer ? at : drift;
   }
-  float total() const {
+  float total(float rounding) const {
     std::size_t best = 0;
     for (std::size_t i = 1; i < 4; ++i) best = squared[i] < squared[best] ? i : best;
-    return std::sqrt(squared[best]) + drift[best];
+    const float distance = std::sqrt(squared[best]);
+    return (distance > rounding ? distance : 0) + drift[best];
   }
   bool found() const { return std::min({squared[0], squared[1], squared[2], squared[3]}) < 3e38F; }
 };
@@ -91,7 +92,7 @@ bool FanDistance::drift_above(Vec3f q, float apex_drift, float& drift) const {
     nearest.offer(inside ? h * h * l.inverse : fill(3e38F), apex * w + l.drift_a * u + l.drift_b * v);
   }
   if (!nearest.found()) return false;
-  drift = nearest.total();
+  drift = nearest.total(rounding_);
   return true;
 }
 
@@ -105,7 +106,7 @@ float FanDistance::drift_at_edges(Vec3f q, float apex_drift) const {
     offer_segment(nearest, p, l.b, apex, l.drift_b);
     offer_segment(nearest, p - l.a, l.b - l.a, l.drift_a, l.drift_b);
   }
-  return nearest.total();
+  return nearest.total(rounding_);
 }
 
 float FanDistance::drift_at(Vec3f q, float apex_drift) const {
@@ -121,7 +122,7 @@ float Sweeper::drift_after(const Candidate& candidate, float enough) {
   const Vec3f from_k = candidate.position - positions[k], from_r = candidate.position - positions[r];
   const auto load = [&](std::uint32_t v) {
     fan_.clear();
-    for (const Corner& c : v == k ? kept_.corners : removed_.corners) {
+    for (const Corner& c : v == k ? kept_ : removed_) {
       const TriangleNormal& t = state_.normals[c.triangle];
       const float inverse = t.inverse_root * t.inverse_root;
       fan_.add({positions[c.a] - positions[v], drift[c.a], positions[c.b] - positions[v], drift[c.b], t.n,

@@ -35,7 +35,7 @@ void prepare(State& state, const Task& task) {
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
       renew_quadric(state, v);
       const bool inner = is_inner(v, 0, [&](auto look) {
-        for (const std::uint32_t entry : state.segment(v)) {
+        for (const std::uint32_t entry : state.star_of(v)) {
           for (const std::uint32_t u : state.triangles[entry >> 2]) look(u);
         }
       });
@@ -68,7 +68,7 @@ float cost_limit(const State& state, double share) {
   for (std::size_t i = 0; i < n; i += stride) {
     const auto v = static_cast<std::uint32_t>(i);
     if ((state.zone[v] & kHeavy) != 0) continue;
-    evaluator.add_edges(v, gather(state, v, corners).corners, [&](std::uint32_t u) { return u != v; });
+    evaluator.add_edges(v, gather(state, v, corners), [&](std::uint32_t u) { return u != v; });
   }
   std::vector<std::uint32_t> histogram(kBins, 0);
   std::size_t total = 0, below = 0;
@@ -131,7 +131,7 @@ void sweep_second(State& state, float max_cost, std::vector<Sweeper>& sweepers, 
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
       if (state.notes[v].merged_at == kNone) continue;
       const bool inner = is_inner(v, kRange / 2, [&](auto look) {
-        for (const Corner& c : gather(state, v, memory).corners) {
+        for (const Corner& c : gather(state, v, memory)) {
           look(c.a);
           look(c.b);
         }

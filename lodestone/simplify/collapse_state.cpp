@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/core/weld.h"
@@ -82,7 +83,9 @@ void take_wedges(State& state, const Mesh& mesh, const Task& task) {
     if (stream.semantic != Semantic::normal || stream.components != 3 || floats == nullptr) continue;
     state.wedge_normals.resize(mesh.wedge_count());
     for (std::size_t w = 0; w < mesh.wedge_count(); ++w) {
-      state.wedge_normals[w] = {(*floats)[w * 3], (*floats)[w * 3 + 1], (*floats)[w * 3 + 2]};
+      const Vec3f n{(*floats)[w * 3], (*floats)[w * 3 + 1], (*floats)[w * 3 + 2]};
+      const float l = length(n);
+      if (l > 0 && std::isfinite(l)) state.wedge_normals[w] = n * (1 / l);
     }
   }
   state.chart = wedge_classes(mesh, compared, task);
@@ -237,6 +240,10 @@ Result<State> make_state(const Mesh& mesh, const EdgeCollapseOptions& options, c
       state.positions[i] = to_float(state.metric.direction(to_double(mesh.positions[v]) - state.center) * inverse);
     }
   });
+  for (const Vec3f p : state.positions) {
+    state.rounding = std::max({state.rounding, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  }
+  state.rounding *= 4 * std::numeric_limits<float>::epsilon();
   for (std::size_t i = 0; i < n && !options.weights.empty(); ++i) {
     state.weights.push_back(options.weights[state.original[i]]);
   }
@@ -251,25 +258,23 @@ Result<State> make_state(const Mesh& mesh, const EdgeCollapseOptions& options, c
 
 void build_stars(State& state, const Task& task) {
   const std::size_t n = state.positions.size();
-  state.star_first.assign(n + 1, 0);
+  std::vector<std::uint32_t> end(n + 1, 0);  // first where each star begins, and once it is filled where it ends
   for (const Triangle& t : state.triangles) {
-    for (const std::uint32_t v : t) ++state.star_first[v];
+    for (const std::uint32_t v : t) ++end[v];
   }
-  state.star.resize(exclusive_scan(state.star_first, task));
+  state.star_memory.resize(exclusive_scan(end, task));
   for (std::uint32_t t = 0; t < state.triangles.size(); ++t) {
-    for (std::uint32_t k = 0; k < 3; ++k) state.star[state.star_first[state.triangles[t][k]]++] = t << 2 | k;
+    for (std::uint32_t k = 0; k < 3; ++k) state.star_memory[end[state.triangles[t][k]]++] = t << 2 | k;
   }
-  for (std::size_t v = n; v > 0; --v) state.star_first[v] = state.star_first[v - 1];
-  state.star_first[0] = 0;
-  state.next.resize(n);
-  state.last.resize(n);
+  state.stars.resize(n);
   state.notes.resize(n);
   state.zone.resize(n);
-  parallel_for(n, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t v = begin; v < end; ++v) {
-      state.last[v] = static_cast<std::uint32_t>(v);
+  parallel_for(n, kChunk, task, [&](std::size_t begin, std::size_t last, std::size_t) {
+    for (std::size_t v = begin; v < last; ++v) {
+      const std::uint32_t first = v == 0 ? 0 : end[v - 1], count = end[v] - first;
+      state.stars[v] = {state.star_memory.data() + first, count, count};
       state.notes[v] = {};
-      state.zone[v] = state.star_first[v + 1] - state.star_first[v] > kMaxValence ? kHeavy : 0;
+      state.zone[v] = count > kMaxValence ? kHeavy : 0;
     }
   });
 }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -106,11 +107,37 @@ struct AttributeField {
   std::size_t stride() const { return blocks == 0 ? 0 : 2 + 3 * blocks; }
 };
 
+/// Triangles around a vertex: each a triangle's number times 4, plus which of its corners the vertex is.
+struct StarRef {
+  std::uint32_t* entries = nullptr;
+  std::uint32_t count = 0, capacity = 0;
+};
+
+/// Room for stars that outgrow the place that they had. What it gave lives as long as it does.
+class StarArena {
+ public:
+  std::uint32_t* take(std::size_t size) {
+    if (size > left_) {
+      left_ = std::max<std::size_t>(size, 4096);
+      blocks_.push_back(std::make_unique_for_overwrite<std::uint32_t[]>(left_));
+      next_ = blocks_.back().get();
+    }
+    left_ -= size;
+    return std::exchange(next_, next_ + size);
+  }
+
+ private:
+  std::vector<std::unique_ptr<std::uint32_t[]>> blocks_;
+  std::uint32_t* next_ = nullptr;
+  std::size_t left_ = 0;
+};
+
 struct State {
   // The frame: working position = metric * (position - center) / scale, scale a power of two near the mean edge length.
   Vec3d center;
   Mat4d metric, metric_inverse;
   double scale = 1;
+  float rounding = 0;  ///< what positions are rounded by, about; working frame
 
   // The mesh as it is at any moment, compacted between passes. Vertices keep a space-filling order, triangles that of
   // their lowest vertices, so that neighbours are near in memory. A triangle that has vanished names kNone.
@@ -136,11 +163,9 @@ struct State {
   std::vector<std::uint32_t> dropped;  ///< input triangles that take no part
   std::vector<LockCause> causes;       ///< one a vertex of the input
 
-  // Rebuilt every pass. A vertex's star is the segment that it began the pass with, then those of the vertices that
-  // have merged into it: v, next[v], ... up to last[v]. Each entry is a triangle's number times 4, plus which of its
-  // corners the vertex is.
-  std::vector<std::uint32_t> star_first, star;
-  std::vector<std::uint32_t> next, last;
+  // Rebuilt every pass.
+  std::vector<StarRef> stars;              ///< one a vertex, of live triangles alone
+  std::vector<std::uint32_t> star_memory;  ///< where the stars are that the pass began with
   std::vector<Quadric> quadrics;
   std::vector<std::uint8_t> zone;  ///< bits of Zone
   std::vector<Notes> notes;
@@ -151,17 +176,7 @@ struct State {
   float weight_of(std::uint32_t v, std::uint32_t w) const {
     return weights.empty() ? 1.0F : std::max(weights[v], weights[w]);
   }
-  std::span<const std::uint32_t> segment(std::uint32_t v) const {
-    return {star.data() + star_first[v], star.data() + star_first[v + 1]};
-  }
-  /// Calls use(triangle) for each triangle of the star, vanished ones too.
-  template <class Use>
-  void each_in_star(std::uint32_t v, Use use) const {
-    for (std::uint32_t s = v;; s = next[s]) {
-      for (std::uint32_t i = star_first[s]; i < star_first[s + 1]; ++i) use(star[i] >> 2);
-      if (s == last[v]) return;
-    }
-  }
+  std::span<const std::uint32_t> star_of(std::uint32_t v) const { return {stars[v].entries, stars[v].count}; }
 };
 
 /// Vertices with more triangles than this sit out a pass (others may still collapse into their neighbours), which
@@ -180,12 +195,8 @@ void classify_vertices(State& state, const EdgeCollapseOptions& options, const T
 /// Builds the stars from triangles, and what the pass knows of vertices. O(triangles).
 void build_stars(State& state, const Task& task);
 
-/// The live triangles around a vertex, in the order of its segments. `memory` is where they go.
-struct Star {
-  std::span<const Corner> corners;
-  std::size_t seen;  ///< with vanished ones
-};
-Star gather(const State& state, std::uint32_t v, std::vector<Corner>& memory);
+/// The triangles around a vertex. `memory` is where they go.
+std::span<const Corner> gather(const State& state, std::uint32_t v, std::vector<Corner>& memory);
 
 /// Finds what follows what around a vertex of up to 16 triangles.
 class Fan {
@@ -326,6 +337,8 @@ struct alignas(16) Leaf {
 
 class FanDistance {
  public:
+  /// Distances below `rounding` count as 0: they would add up to something on flats of many triangles.
+  explicit FanDistance(float rounding) : rounding_(rounding) {}
   void clear() { size_ = 0; }
   void add(const Leaf& leaf) {
     if (size_ == leaf_.size()) leaf_.resize(size_ + 64);
@@ -344,6 +357,7 @@ class FanDistance {
  private:
   std::vector<Leaf> leaf_;
   std::size_t size_ = 0;
+  float rounding_;
 };
 
 /// Takes the cheapest edge from its queue, collapses it and puts the edges that this changes back, until none is left
@@ -358,7 +372,7 @@ class Sweeper {
   template <class Wanted>
   void add_edges(std::uint32_t v, Wanted wanted) {
     if ((state_.zone[v] & kHeavy) != 0) return;
-    evaluator_.add_edges(v, gather(state_, v, kept_memory_).corners, wanted);
+    evaluator_.add_edges(v, gather(state_, v, kept_memory_), wanted);
     if (evaluator_.size() >= 64) enqueue();
   }
   void run(const Task& task);
@@ -371,7 +385,7 @@ class Sweeper {
  private:
   bool may_touch(std::uint32_t v) const { return (state_.zone[v] & zone_) == zone_; }
   void enqueue();
-  void push(const Candidate& candidate);
+  void push(const Candidate& candidate, float cost);
   void try_collapse(Candidate candidate);
   bool refresh(Candidate& candidate);
   bool link_allows(const Candidate& candidate);
@@ -386,11 +400,15 @@ class Sweeper {
   float drift_after(const Candidate& candidate, float enough);
   void record(const Candidate& candidate, bool moved, float error);
   float blend_wedges(const Candidate& candidate, bool moved);
-  void blend_by_place(const Candidate& candidate);
-  void blend_by_values(const Candidate& candidate);
+  float share_by_place(const Candidate& candidate) const;
+  float share_by_values(const Candidate& candidate);
+  void blend_all(float share);
+  void blend_one(const Candidate& candidate);
   float attribute_error(const Candidate& candidate, bool moved) const;
   bool turns_textures(const Candidate& candidate) const;
   void apply(const Candidate& candidate, bool moved);
+  void leave_star(std::uint32_t v, std::uint32_t triangle);
+  void join_stars(std::uint32_t kept, std::uint32_t removed);
   void renew(std::uint32_t vertex);
   void add_new_edges(std::uint32_t kept);
 
@@ -407,7 +425,7 @@ class Sweeper {
 
   // The collapse at hand.
   std::size_t shared_ = 0;  // triangles that vanish
-  Star kept_, removed_;
+  std::span<const Corner> kept_, removed_;
   std::vector<Corner> kept_memory_, removed_memory_, corners_;  // corners_: of the new vertex,
   FanDistance fan_;
   std::vector<Vec3f> normals_;                                  // whose triangles get these normals,
@@ -417,7 +435,9 @@ class Sweeper {
   std::vector<std::uint32_t> kept_wedges_;
   std::vector<WedgeMerge> merging_;    // the wedges' part of the record
   std::vector<Float4> merged_values_;  // of the kept wedges afterwards
+  std::vector<Float4> wanted_;         // scratch: values that err least
 
+  StarArena arena_;
   std::vector<Step> steps_;
   std::vector<WedgeMerge> merges_;
 };

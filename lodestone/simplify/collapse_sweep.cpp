@@ -25,29 +25,19 @@ constexpr float kNeedleSineSq = 1e-6F;
 // The drift, squared, costs as if it were over this many mean triangles.
 constexpr float kDriftWeight = 0.5F;
 
-// A star that has been looked through this many times its size in vain rests until the pass ends, which tidies up.
-constexpr std::size_t kMostVanished = 8;
-
 }  // namespace
 
-Star gather(const State& state, std::uint32_t v, std::vector<Corner>& memory) {
+std::span<const Corner> gather(const State& state, std::uint32_t v, std::vector<Corner>& memory) {
   static constexpr std::uint32_t kNext[4] = {1, 2, 0, 1};
-  std::size_t count = 0, seen = 0;
-  for (std::uint32_t s = v;; s = state.next[s]) {
-    const std::span<const std::uint32_t> segment = state.segment(s);
-    seen += segment.size();
-    if (memory.size() < seen) memory.resize(2 * seen);
-    Corner* out = memory.data() + count;
-    for (const std::uint32_t entry : segment) {
-      const std::uint32_t t = entry >> 2, k = entry & 3;
-      const Triangle& c = state.triangles[t];
-      *out = {c[kNext[k]], c[kNext[k + 1]], t};
-      out += out->a != kNone ? 1 : 0;  // without a branch: what has vanished can't be foreseen
-    }
-    count = static_cast<std::size_t>(out - memory.data());
-    if (s == state.last[v]) break;
+  const std::span<const std::uint32_t> star = state.star_of(v);
+  if (memory.size() < star.size()) memory.resize(2 * star.size());
+  Corner* out = memory.data();
+  for (const std::uint32_t entry : star) {
+    const std::uint32_t t = entry >> 2, k = entry & 3;
+    const Triangle& c = state.triangles[t];
+    *out++ = {c[kNext[k]], c[kNext[k + 1]], t};
   }
-  return {std::span<const Corner>(memory).first(count), seen};
+  return std::span<const Corner>(memory).first(star.size());
 }
 
 Sweeper::Sweeper(State& state, std::uint8_t zone, float max_cost, std::uint32_t first_collapse,
@@ -59,14 +49,15 @@ Sweeper::Sweeper(State& state, std::uint8_t zone, float max_cost, std::uint32_t 
       collapse_(first_collapse),
       mark_(first_mark),
       evaluator_(state),
-      bin_(kBins) {}
+      bin_(kBins),
+      fan_(state.rounding) {}
 
-void Sweeper::push(const Candidate& candidate) {
+void Sweeper::push(const Candidate& candidate, float cost) {
   if (bin_head_.empty()) {
     bin_head_.assign(kBins, kNone);
     bin_tail_.assign(kBins, kNone);
   }
-  const std::uint32_t bin = bin_of(candidate.cost), entry = static_cast<std::uint32_t>(queue_.size());
+  const std::uint32_t bin = bin_of(cost), entry = static_cast<std::uint32_t>(queue_.size());
   queue_.push_back(candidate);
   queue_next_.push_back(kNone);
   (bin_head_[bin] == kNone ? bin_head_[bin] : queue_next_[bin_tail_[bin]]) = entry;
@@ -78,7 +69,7 @@ void Sweeper::enqueue() {
   for (Candidate& c : evaluator_.finish()) {
     if (!is_possible(c.cost, max_cost_)) continue;
     c.stamp = collapse_;
-    push(c);
+    push(c, c.cost);
   }
   evaluator_.clear();
 }
@@ -105,7 +96,7 @@ bool Sweeper::refresh(Candidate& candidate) {
   if (kept.touched_at <= candidate.stamp && removed.touched_at <= candidate.stamp) return true;
   renew(candidate.kept);
   renew(candidate.removed);
-  evaluator_.add_edge(candidate.kept, candidate.removed, removed_.corners);
+  evaluator_.add_edge(candidate.kept, candidate.removed, removed_);
   const std::vector<Candidate>& now = evaluator_.finish();
   const bool possible = !now.empty() && is_possible(now[0].cost, max_cost_);
   if (possible) {
@@ -116,7 +107,7 @@ bool Sweeper::refresh(Candidate& candidate) {
   evaluator_.clear();
   if (!possible) return false;
   if (bin_of(candidate.cost) <= bin_) return true;
-  push(candidate);
+  push(candidate, candidate.cost);
   return false;
 }
 
@@ -127,17 +118,17 @@ bool Sweeper::link_allows(const Candidate& candidate) {
   std::vector<Notes>& notes = state_.notes;
   const std::uint32_t around = mark_ + 1, both = mark_ + 2, opposite = mark_ + 3;
   mark_ += 3;
-  for (const Corner& c : kept_.corners) notes[c.a].mark = notes[c.b].mark = around;
+  for (const Corner& c : kept_) notes[c.a].mark = notes[c.b].mark = around;
   shared_ = 0;
   std::size_t common = 0, thirds = 0;
-  for (const Corner& c : removed_.corners) {
+  for (const Corner& c : removed_) {
     for (const std::uint32_t u : {c.a, c.b}) {
       if (u == candidate.kept || notes[u].mark != around) continue;
       notes[u].mark = both;
       ++common;
     }
   }
-  for (const Corner& c : removed_.corners) {
+  for (const Corner& c : removed_) {
     if (c.a != candidate.kept && c.b != candidate.kept) continue;
     ++shared_;
     const std::uint32_t third = c.a == candidate.kept ? c.b : c.a;
@@ -146,13 +137,13 @@ bool Sweeper::link_allows(const Candidate& candidate) {
     ++thirds;
   }
   if (shared_ == 0 || common != thirds) return false;
-  if (removed_.corners.size() + kept_.corners.size() == 2 * shared_) return false;
+  if (removed_.size() + kept_.size() == 2 * shared_) return false;
   const auto between_thirds = [&](const Corner& c) {
     return notes[c.a].mark == opposite && notes[c.b].mark == opposite;
   };
-  for (const Corner& r : removed_.corners) {
+  for (const Corner& r : removed_) {
     if (!between_thirds(r)) continue;
-    for (const Corner& k : kept_.corners) {
+    for (const Corner& k : kept_) {
       if (between_thirds(k) && ((k.a == r.a && k.b == r.b) || (k.a == r.b && k.b == r.a))) return false;
     }
   }
@@ -186,7 +177,7 @@ bool Sweeper::flips(const Candidate& candidate, bool moved) {
     }
     return false;
   };
-  return turns(kept_.corners, candidate.removed, moved) || turns(removed_.corners, candidate.kept, true);
+  return turns(kept_, candidate.removed, moved) || turns(removed_, candidate.kept, true);
 }
 
 // True if two triangles with these normals face each other closer than the limit.
@@ -214,11 +205,12 @@ bool Sweeper::folds_outwards() const {
     const Corner& c = corners_[i];
     const Vec3f before = state_.normals[c.triangle].n, after = normals_[i];
     bool fold = false;
-    state_.each_in_star(c.a, [&](std::uint32_t t) {
+    for (const std::uint32_t entry : state_.star_of(c.a)) {
+      const std::uint32_t t = entry >> 2;
       const Triangle& v = state_.triangles[t];
-      if (t == c.triangle || (v[0] != c.b && v[1] != c.b && v[2] != c.b)) return;
+      if (t == c.triangle || (v[0] != c.b && v[1] != c.b && v[2] != c.b)) continue;
       fold = fold || (is_fold(state_.normals[t].n, after) && !is_fold(state_.normals[t].n, before));
-    });
+    }
     if (fold) return true;
   }
   return false;
@@ -228,7 +220,7 @@ bool Sweeper::folds_outwards() const {
 bool Sweeper::folds() const {
   if (folds_outwards()) return true;
   if (!has_fold(corners_, [&](std::size_t i) { return normals_[i]; })) return false;
-  for (const std::span<const Corner> corners : {kept_.corners, removed_.corners}) {
+  for (const std::span<const Corner> corners : {kept_, removed_}) {
     if (has_fold(corners, [&](std::size_t i) { return state_.normals[corners[i].triangle].n; })) return false;
   }
   return true;
@@ -245,19 +237,45 @@ void Sweeper::record(const Candidate& candidate, bool moved, float error) {
   step.wedge_count = static_cast<std::uint32_t>(merging_.size());
   merges_.insert(merges_.end(), merging_.begin(), merging_.end());
   step.faces = static_cast<std::uint32_t>(shared_);
-  for (const Corner& c : removed_.corners) {
+  for (const Corner& c : removed_) {
     const bool vanishes = c.a == candidate.kept || c.b == candidate.kept;
     if (vanishes && !state_.has_back.empty()) step.faces += state_.has_back[c.triangle];
   }
   step.moved = moved;
   // What this collapse builds on has left its place around here.
   step.order = bin_of(candidate.cost);
-  for (const std::span<const Corner> corners : {kept_.corners, removed_.corners}) {
+  for (const std::span<const Corner> corners : {kept_, removed_}) {
     for (const Corner& c : corners) {
       step.order = std::max<std::uint32_t>({step.order, state_.notes[c.a].order, state_.notes[c.b].order});
     }
   }
   steps_.push_back(step);
+}
+
+void Sweeper::leave_star(std::uint32_t v, std::uint32_t triangle) {
+  StarRef& star = state_.stars[v];
+  for (std::uint32_t i = 0; i < star.count; ++i) {
+    if (star.entries[i] >> 2 != triangle) continue;
+    star.entries[i] = star.entries[--star.count];
+    return;
+  }
+}
+
+// The star of the new vertex, whose triangles know it by now.
+void Sweeper::join_stars(std::uint32_t kept, std::uint32_t removed) {
+  StarRef &star = state_.stars[kept], &other = state_.stars[removed];
+  const auto size = static_cast<std::uint32_t>(corners_.size());
+  if (star.capacity < size) std::swap(star, other);
+  if (star.capacity < size) {
+    star.capacity = size + 4;
+    star.entries = arena_.take(star.capacity);
+  }
+  star.count = size;
+  other.count = 0;
+  for (std::uint32_t i = 0; i < size; ++i) {
+    const Triangle& c = state_.triangles[corners_[i].triangle];
+    star.entries[i] = corners_[i].triangle << 2 | (c[0] == kept ? 0U : c[1] == kept ? 1U : 2U);
+  }
 }
 
 // Changes the mesh.
@@ -277,10 +295,12 @@ void Sweeper::apply(const Candidate& candidate, bool moved) {
     if (notes.mark == mark_) return;
     notes = {mark_, collapse_, notes.merged_at, order, true};
   };
-  for (const Corner& c : removed_.corners) {
+  for (const Corner& c : removed_) {
     Triangle& triangle = state_.triangles[c.triangle];
     if (c.a == k || c.b == k) {
-      visit(c.a == k ? c.b : c.a);
+      const std::uint32_t third = c.a == k ? c.b : c.a;
+      visit(third);
+      leave_star(third, c.triangle);
       triangle = {kNone, kNone, kNone};
       state_.normals[c.triangle] = {};
       continue;
@@ -298,8 +318,7 @@ void Sweeper::apply(const Candidate& candidate, bool moved) {
     state_.normals[corners_[i].triangle] = weighed_normal(normals_[i]);
   }
   if (!state_.weights.empty()) state_.weights[k] = std::max(state_.weights[k], state_.weights[r]);
-  state_.next[state_.last[k]] = r;
-  state_.last[k] = state_.last[r];
+  join_stars(k, r);
   state_.notes[r].merged_at = kNone;
   state_.notes[k] = {mark_, collapse_, collapse_, order, true};
   state_.zone[k] &= static_cast<std::uint8_t>(state_.zone[r] | kHeavy);
@@ -313,7 +332,7 @@ void Sweeper::renew(std::uint32_t vertex) {
 
 // The new vertex's edges into the queue.
 void Sweeper::add_new_edges(std::uint32_t kept) {
-  if (corners_.size() > kMaxValence || kept_.seen + removed_.seen > 64 + kMostVanished * corners_.size()) return;
+  if (corners_.size() > kMaxValence) return;
   renew(kept);
   for (const Corner& c : corners_) {
     if (may_touch(c.a)) renew(c.a);
@@ -327,9 +346,9 @@ void Sweeper::try_collapse(Candidate candidate) {
   const std::uint32_t k = candidate.kept, r = candidate.removed;
   if (state_.notes[k].merged_at > candidate.stamp || state_.notes[r].merged_at > candidate.stamp) return;
   removed_ = gather(state_, r, removed_memory_);
-  if (removed_.corners.size() > kMaxValence || !refresh(candidate)) return;
+  if (removed_.size() > kMaxValence || !refresh(candidate)) return;
   kept_ = gather(state_, k, kept_memory_);
-  if (kept_.corners.size() > kMaxValence || !link_allows(candidate)) return;
+  if (kept_.size() > kMaxValence || !link_allows(candidate)) return;
   const bool moved = state_.classes[k] == state_.classes[r];
   if (flips(candidate, moved) || folds()) return;
   const float weight = state_.weight_of(k, r), drift_scale = kDriftWeight * state_.mean_weight * weight;
@@ -345,11 +364,11 @@ void Sweeper::try_collapse(Candidate candidate) {
     }
   }
   if (bin_of(cost) > bin_) {  // dearer than its queue knew: its turn comes later
-    candidate.cost = cost;
     candidate.stamp = collapse_;
-    if (is_possible(cost, max_cost_)) push(candidate);
+    if (is_possible(cost, max_cost_)) push(candidate, cost);
     return;
   }
+  candidate.cost = cost;
   record(candidate, moved, error);
   apply(candidate, moved);
   state_.drift[k] = drift;

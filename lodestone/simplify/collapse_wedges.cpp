@@ -1,6 +1,7 @@
 // What becomes of wedges and their attributes in a collapse.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lodestone/simplify/collapse_attributes_detail.h"
 
@@ -8,11 +9,11 @@ namespace lodestone::simplify::detail {
 
 std::uint32_t Sweeper::nearest_normal(std::uint32_t wedge, std::uint32_t chart) const {
   std::uint32_t best = kNone;
-  float best_cosine = -2;
+  float best_cosine = -std::numeric_limits<float>::infinity();
   for (const std::uint32_t k : kept_wedges_) {
     if (state_.chart[k] != chart) continue;
     const float cosine = state_.wedge_normals.empty() ? 0 : dot(state_.wedge_normals[k], state_.wedge_normals[wedge]);
-    if (cosine > best_cosine) {
+    if (best == kNone || cosine > best_cosine) {
       best = k;
       best_cosine = cosine;
     }
@@ -29,7 +30,7 @@ bool Sweeper::pair_wedges(const Candidate& candidate, bool moved) {
   };
   pairs_.clear();
   kept_wedges_.clear();
-  for (const Corner& c : kept_.corners) {
+  for (const Corner& c : kept_) {
     const std::uint32_t w = wedge_at(state_, c.triangle, candidate.kept);
     if (std::find(kept_wedges_.begin(), kept_wedges_.end(), w) == kept_wedges_.end()) kept_wedges_.push_back(w);
     if (c.a != candidate.removed && c.b != candidate.removed) continue;
@@ -42,7 +43,7 @@ bool Sweeper::pair_wedges(const Candidate& candidate, bool moved) {
     }
   }
   across_ = pairs_.size();
-  for (const Corner& c : removed_.corners) {
+  for (const Corner& c : removed_) {
     const std::uint32_t from = wedge_at(state_, c.triangle, candidate.removed);
     if (find(from) != pairs_.end()) continue;
     const auto kin = std::find_if(pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(across_),
@@ -58,50 +59,58 @@ bool Sweeper::pair_wedges(const Candidate& candidate, bool moved) {
   });
 }
 
-// Where the new position lies along the edge is where each wedge's values lie between its own and its partner's.
-void Sweeper::blend_by_place(const Candidate& candidate) {
+// Where the new position lies along the edge, 0 to 1.
+float Sweeper::share_by_place(const Candidate& candidate) const {
   const Vec3f from = state_.positions[candidate.kept], edge = state_.positions[candidate.removed] - from;
   const float l = length_sq(edge);
-  const float t = l > 0 ? std::clamp(dot(candidate.position - from, edge) / l, 0.0F, 1.0F) : 0.0F;
-  if (!(t > 0)) return;
+  return l > 0 ? std::clamp(dot(candidate.position - from, edge) / l, 0.0F, 1.0F) : 0.0F;
+}
+
+// Where along the edge attributes err least, all pairs of wedges together.
+float Sweeper::share_by_values(const Candidate& candidate) {
+  const AttributeField& field = state_.attributes;
+  float along = 0, goal = 0;
+  for (const auto& [removed, kept] : pairs_) {
+    best_values(state_, {kept, removed, candidate.kept, candidate.removed, true}, candidate.position, wanted_);
+    const Projection p = project(field, kept, removed, wanted_);
+    along += p.along_along;
+    goal += p.along_goal;
+  }
+  return along > 0 ? std::clamp(goal / along, 0.0F, 1.0F) : share_by_place(candidate);
+}
+
+// All wedges go the same share of the way to their partners: what agreed across a hard edge (UVs, skin weights, morph
+// targets) agrees afterwards.
+void Sweeper::blend_all(float share) {
+  if (!(share > 0)) return;
   for (const std::uint32_t wedge : kept_wedges_) {
     const auto same = std::find_if(pairs_.begin(), pairs_.end(), [&](const auto& p) { return p.second == wedge; });
     if (same != pairs_.end()) {
-      merging_[static_cast<std::size_t>(same - pairs_.begin())].blend = t;
+      merging_[static_cast<std::size_t>(same - pairs_.begin())].blend = share;
       continue;
     }
     const auto kin = std::find_if(pairs_.begin(), pairs_.end(),
                                   [&](const auto& p) { return state_.chart[p.second] == state_.chart[wedge]; });
-    merging_.push_back({wedge, kin->first, t, false});
+    merging_.push_back({wedge, kin->first, share, false});
   }
 }
 
-// Each wedge gets as near as it can to the values that err least, between its own, its partner's and those of a third
-// vertex that both ends share.
-void Sweeper::blend_by_values(const Candidate& candidate) {
-  blend_by_place(candidate);
-  const AttributeField& field = state_.attributes;
-  std::vector<Float4> wanted(field.blocks);
-  const std::size_t plain = merging_.size();
-  for (std::size_t i = 0; i < plain; ++i) {
-    WedgeMerge& merge = merging_[i];
-    const bool first = std::none_of(merging_.begin(), merging_.begin() + static_cast<std::ptrdiff_t>(i),
-                                    [&](const WedgeMerge& m) { return m.kept == merge.kept; });
-    if (!first) continue;
-    best_values(state_, {merge.kept, merge.removed, candidate.kept, candidate.removed, true}, candidate.position,
-                wanted);
-    std::uint32_t thirds[2];
-    std::size_t count = 0;
-    for (const Corner& c : kept_.corners) {
-      if (count == 2 || (c.a != candidate.removed && c.b != candidate.removed)) continue;
-      const std::uint32_t third = c.a == candidate.removed ? c.b : c.a;
-      if (wedge_at(state_, c.triangle, candidate.kept) == merge.kept)
-        thirds[count++] = wedge_at(state_, c.triangle, third);
-    }
-    const Blend blend = blend_towards(field, merge.kept, merge.removed, std::span(thirds).first(count), wanted);
-    merge.blend = blend.to_removed;
-    if (blend.third != kNone) merging_.push_back({merge.kept, blend.third, blend.to_third, false});
+// The one wedge gets as near as it can to the values that err least, between its own, its partner's and those of a
+// third vertex that both ends share.
+void Sweeper::blend_one(const Candidate& candidate) {
+  WedgeMerge& merge = merging_.front();
+  best_values(state_, {merge.kept, merge.removed, candidate.kept, candidate.removed, true}, candidate.position,
+              wanted_);
+  std::uint32_t thirds[2];
+  std::size_t count = 0;
+  for (const Corner& c : kept_) {
+    if (count == 2 || (c.a != candidate.removed && c.b != candidate.removed)) continue;
+    thirds[count++] = wedge_at(state_, c.triangle, c.a == candidate.removed ? c.b : c.a);
   }
+  const Blend blend =
+      blend_towards(state_.attributes, merge.kept, merge.removed, std::span(thirds).first(count), wanted_);
+  merge.blend = blend.to_removed;
+  if (blend.third != kNone) merging_.push_back({merge.kept, blend.third, blend.to_third, false});
 }
 
 // What becomes of the wedges: merging_, and where attributes have a say merged_values_. Returns what this costs beyond
@@ -110,16 +119,15 @@ float Sweeper::blend_wedges(const Candidate& candidate, bool moved) {
   merging_.clear();
   for (const auto& [removed, kept] : pairs_) merging_.push_back({kept, removed, 0, true});
   const AttributeField& field = state_.attributes;
-  if (field.blocks == 0) {
-    if (moved) blend_by_place(candidate);
-    return 0;
-  }
   // Along a feature both sides have to agree, or what they show would slide apart.
-  if (moved && state_.classes[candidate.kept] == VertexClass::interior) {
-    blend_by_values(candidate);
+  const bool free = field.blocks > 0 && state_.classes[candidate.kept] == VertexClass::interior;
+  wanted_.resize(field.blocks);
+  if (moved && free && kept_wedges_.size() == 1 && pairs_.size() == 1) {
+    blend_one(candidate);
   } else if (moved) {
-    blend_by_place(candidate);
+    blend_all(free ? share_by_values(candidate) : share_by_place(candidate));
   }
+  if (field.blocks == 0) return 0;
   merged_values_.clear();
   for (const std::uint32_t wedge : kept_wedges_) {
     const std::size_t at = merged_values_.size();
@@ -146,7 +154,8 @@ float Sweeper::attribute_error(const Candidate& candidate, bool moved) const {
   float most = 0;
   for (const auto& [removed, kept] : pairs_) {
     const AttributePair pair{kept, removed, candidate.kept, candidate.removed, moved};
-    const float area = wedge_area(state_.attributes, removed) + (moved ? wedge_area(state_.attributes, kept) : 0.0F);
+    const float area =
+        wedge_weight(state_.attributes, removed) + (moved ? wedge_weight(state_.attributes, kept) : 0.0F);
     if (area > 0) most = std::max(most, attribute_cost(state_, pair, candidate.position) / area);
   }
   return std::sqrt(most);
@@ -176,10 +185,10 @@ bool Sweeper::turns_textures(const Candidate& candidate) const {
     }
     return false;
   };
-  for (const Corner& c : kept_.corners) {
+  for (const Corner& c : kept_) {
     if (c.a != candidate.removed && c.b != candidate.removed && turns(c, candidate.kept)) return true;
   }
-  for (const Corner& c : removed_.corners) {
+  for (const Corner& c : removed_) {
     if (c.a != candidate.kept && c.b != candidate.kept && turns(c, candidate.removed)) return true;
   }
   return false;

@@ -168,7 +168,11 @@ void release_mesh(State& state) {
   state.quadrics = {};
   state.notes = {};
   state.classes = {};
-  state.star = state.star_first = state.next = state.last = state.groups = state.original = state.chart = {};
+  state.stars = {};
+  state.attributes = {};
+  state.wedge_normals = {};
+  state.weights = {};
+  state.star_memory = state.groups = state.original = state.chart = {};
 }
 
 }  // namespace

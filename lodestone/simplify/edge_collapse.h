@@ -60,7 +60,9 @@ struct LockCounts {
 struct EdgeCollapseResult {
   Mesh mesh;
   std::vector<std::uint32_t> origin;  ///< for each output triangle, the input triangle that it descends from
-  double estimated_error = 0;         ///< units of `metric`; the measured one comes from `measure`
+  /// How far the surface is from the input, about, or what errors of attributes count, whichever is larger; units of
+  /// `metric`. The measured error comes from `measure`.
+  double estimated_error = 0;
   StopReason stop = StopReason::no_legal_collapse;
   LockCounts locked;
   std::optional<CollapseLog> log;  ///< with record_log

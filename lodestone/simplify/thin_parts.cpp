@@ -64,6 +64,7 @@ class Greedy {
       const Entry cheapest = queue_.top();
       queue_.pop();
       const Entry now{error_of(cheapest.part), cheapest.part};
+      if (task_.cancelled()) return;  // else not all has been asked for what is near
       if (!queue_.empty() && queue_.top() < now) {
         queue_.push(now);
       } else {
@@ -183,6 +184,7 @@ class Greedy {
     parallel_for(vertices.size(), kChunk, task_, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t i = begin; i < end; ++i) ask(vertices[i], p);
     });
+    if (task_.cancelled()) return 0;
     double most = -1, grown = 0;
     for (const std::uint32_t v : vertices) {
       if (near_[v].part == kNone) continue;  // cancelled

@@ -124,6 +124,44 @@ TEST(CollapseAttributes, without_a_say_they_follow_and_change_nothing) {
   EXPECT_NE(a.positions, c.positions);
 }
 
+// Every triangle with its own normals: what agreed across the edges must agree afterwards, or textures and skins tear.
+TEST(CollapseAttributes, wedges_that_differ_in_normals_alone_keep_the_rest_in_common) {
+  const Mesh smooth = test::grid(20, 0.1F);
+  for (const float length : {1.0F, 100.0F}) {  // normals of any length are legal in OBJ
+    Mesh in;
+    in.positions = smooth.positions;
+    std::vector<float> normals, uv, delta;
+    for (const Triangle& t : smooth.triangles) {
+      const Vec3d n = normalized(scaled_normal(smooth.position(t[0]), smooth.position(t[1]), smooth.position(t[2])));
+      Triangle w{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        w[k] = static_cast<std::uint32_t>(in.wedge_vertex.size());
+        in.wedge_vertex.push_back(t[k]);
+        const Vec3f p = smooth.positions[t[k]], m = to_float(n) * length;
+        normals.insert(normals.end(), {m.x, m.y, m.z});
+        uv.insert(uv.end(), {p.x + 0.1F * static_cast<float>(std::sin(9.0 * double{p.y})), p.y});
+        delta.insert(delta.end(), {0, 0, p.x * p.y});
+      }
+      in.triangles.push_back(w);
+    }
+    const auto add = [&](const char* name, Semantic semantic, std::uint32_t components, std::vector<float> values) {
+      in.attributes.push_back(make_stream(name, semantic, components, ComponentType::float32, false, 0));
+      in.attributes.back().values = std::move(values);
+    };
+    add("NORMAL", Semantic::normal, 3, normals);
+    add("TEXCOORD_0", Semantic::uv, 2, uv);
+    add("POSITION_0", Semantic::morph_position, 3, delta);
+    const Mesh out = collapse(in, 120).mesh;
+    std::vector<std::uint32_t> first(out.positions.size(), kNone);
+    for (std::uint32_t w = 0; w < out.wedge_count(); ++w) {
+      std::uint32_t& known = first[out.vertex_of(w)];
+      if (known == kNone) known = w;
+      for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(floats(out, 1)[2 * w + k], floats(out, 1)[2 * known + k]);
+      for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(floats(out, 2)[3 * w + k], floats(out, 2)[3 * known + k]);
+    }
+  }
+}
+
 TEST(CollapseAttributes, not_a_number_and_infinities_do_no_harm) {
   const Mesh in = with_stream(test::torus(24), "TEXCOORD_0", Semantic::uv, 2, [](Vec3f p, float* uv) {
     uv[0] = p.x > 0.5F ? std::numeric_limits<float>::quiet_NaN() : p.x;

@@ -158,7 +158,7 @@ TEST(EdgeCollapse, flat_parts_cost_nothing_and_outlines_stay) {
   const EdgeCollapseResult out = collapse(in, 2);
   EXPECT_LE(out.mesh.triangles.size(), 8U);
   EXPECT_NEAR(area_of(out.mesh), 1, 1e-5);
-  EXPECT_LT(out.estimated_error, 1e-5);  // rounding adds up
+  EXPECT_LT(out.estimated_error, 1e-5);
 }
 
 // Two separate plates 1e-3 apart: as they are, far away, and turned. All costs are 0 or noise.

@@ -126,6 +126,28 @@ TEST(ThinParts, the_same_for_any_number_of_threads) {
   EXPECT_EQ(thin_parts(mesh, options, task).error().code, ErrorCode::cancelled);
 }
 
+TEST(ThinParts, can_be_cancelled_at_any_moment) {
+  Mesh mesh;  // parts of more vertices than are asked at once
+  const Mesh torus = test::torus(9);
+  for (std::uint64_t i = 0; i < 1500; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const Vec3f at{static_cast<float>(random_unit(1, 3 * i)), static_cast<float>(random_unit(1, 3 * i + 1)),
+                   static_cast<float>(random_unit(1, 3 * i + 2))};
+    for (const Vec3f p : torus.positions) mesh.positions.push_back(p + at * 200.0F);
+    for (const Triangle& t : torus.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  for (const double when : {0.05, 0.3, 0.7}) {
+    const Task* running = nullptr;
+    const Task task = Task::root([&](double done, const std::string&) {
+      if (done > when) running->cancel();
+    });
+    running = &task;
+    const Result<ThinParts> out = thin_parts(mesh, {}, task);
+    ASSERT_FALSE(out);
+    EXPECT_EQ(out.error().code, ErrorCode::cancelled);
+  }
+}
+
 TEST(ThinParts, odd_meshes_are_no_trouble) {
   for (const test::Shape& shape : test::small_shapes()) {
     const ThinParts thin = order_of(shape.make());
