@@ -169,12 +169,17 @@ struct State {
   std::vector<Quadric> quadrics;
   std::vector<std::uint8_t> zone;  ///< bits of Zone
   std::vector<Notes> notes;
-  float mean_weight = 0;  ///< what a triangle of mean area weighs: twice that area to the power of 1.5
+  float drift_weight = 0;  ///< what drift, squared, costs
 
   float fold_cosine = 0;  ///< EdgeCollapseOptions::fold_cosine
 
   float weight_of(std::uint32_t v, std::uint32_t w) const {
     return weights.empty() ? 1.0F : std::max(weights[v], weights[w]);
+  }
+  /// What it costs at least to merge two vertices, as the drift never falls.
+  float cost_of_drift(std::uint32_t v, std::uint32_t w) const {
+    const float most = std::max(drift[v], drift[w]);
+    return drift_weight * most * most;
   }
   std::span<const std::uint32_t> star_of(std::uint32_t v) const { return {stars[v].entries, stars[v].count}; }
 };

@@ -22,9 +22,6 @@ constexpr float kTurnsLittleSq = 0.98F;
 // shrinks: it would be without area once positions are rounded.
 constexpr float kNeedleSineSq = 1e-6F;
 
-// The drift, squared, costs as if it were over this many mean triangles.
-constexpr float kDriftWeight = 0.5F;
-
 }  // namespace
 
 std::span<const Corner> gather(const State& state, std::uint32_t v, std::vector<Corner>& memory) {
@@ -351,7 +348,7 @@ void Sweeper::try_collapse(Candidate candidate) {
   if (kept_.size() > kMaxValence || !link_allows(candidate)) return;
   const bool moved = state_.classes[k] == state_.classes[r];
   if (flips(candidate, moved) || folds()) return;
-  const float weight = state_.weight_of(k, r), drift_scale = kDriftWeight * state_.mean_weight * weight;
+  const float weight = state_.weight_of(k, r), drift_scale = state_.drift_weight * weight;
   const float drift = drift_after(candidate, std::sqrt(candidate.cost / drift_scale));
   float cost = std::max(candidate.cost, drift_scale * drift * drift);
   float error = drift;
