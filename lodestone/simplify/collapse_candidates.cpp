@@ -132,7 +132,7 @@ void EdgeEvaluator::add(std::uint32_t v, const Spoke& spoke) {
     const std::uint32_t second = spoke.count > 1 ? spoke.triangles[1] : kNone;
     candidate.cost += attributes_of(candidate, false, spoke.triangles[0], second);
   }
-  candidate.cost = std::max(candidate.cost, state_.cost_of_drift(kept, removed)) * state_.weight_of(kept, removed);
+  candidate.cost = std::max(candidate.cost, state_.cost_of_drift(kept, removed, 0)) * state_.weight_of(kept, removed);
   out_.push_back(candidate);
 }
 
@@ -194,8 +194,9 @@ void EdgeEvaluator::flush() {
     candidate.position = {x[i], y[i], z[i]};
     candidate.cost = p.cost[i];
     if (state_.attributes.blocks > 0) candidate.cost += attributes_of(candidate, true, first_[i], second_[i]);
-    candidate.cost = std::max(candidate.cost, state_.cost_of_drift(candidate.kept, candidate.removed)) *
-                     state_.weight_of(candidate.kept, candidate.removed);
+    candidate.cost =
+        std::max(candidate.cost, state_.cost_of_drift(candidate.kept, candidate.removed, p.mean_square[i])) *
+        state_.weight_of(candidate.kept, candidate.removed);
   }
   waiting_ = 0;
 }

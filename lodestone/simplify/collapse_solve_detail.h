@@ -32,6 +32,7 @@ struct EdgeTerms {
 template <class F>
 struct EdgePlacement {
   Vec<F> position;  ///< relative to v
+  F mean_square;    ///< of the distances to the planes of the triangles around, each weighed
   F cost;           ///< sum of squared distances times twice the area to the power of 1.5, over the triangles around
 };
 
@@ -92,7 +93,8 @@ EdgePlacement<F> place_freely(const EdgeTerms<F>& in) {
   const Sym3<F>& a1 = in.a1;
   const Vec<F>& e = in.edge;
   Sym3<F> a{a0.xx + a1.xx, a0.xy + a1.xy, a0.xz + a1.xz, a0.yy + a1.yy, a0.yz + a1.yz, a0.zz + a1.zz};
-  const F pull = (a.xx + a.yy + a.zz) * 1e-6F + 1e-30F;
+  const F trace = a.xx + a.yy + a.zz + 1e-24F;  // what the triangles weigh
+  const F pull = trace * 1e-6F;
   a.xx += pull;
   a.yy += pull;
   a.zz += pull;
@@ -111,7 +113,8 @@ EdgePlacement<F> place_freely(const EdgeTerms<F>& in) {
   x = {select(near, x.x, middle.x), select(near, x.y, middle.y), select(near, x.z, middle.z)};
   const Vec<F> y{x.x - e.x, x.y - e.y, x.z - e.z};
   const F cost = dot(x, times(a0, x)) + dot(y, times(a1, y));
-  return {x, select(cost > 0.0F, cost, cost - cost)};  // +0, never -0: bins are made of bits
+  const F positive = select(cost > 0.0F, cost, cost - cost);
+  return {x, positive / trace, positive};  // +0, never -0: bins are made of bits
 }
 
 struct Placement {
