@@ -229,6 +229,7 @@ void compact(State& state) {
     if (c[0] == kNone) continue;
     state.triangles[kept] = {name[c[0]], name[c[1]], name[c[2]]};
     state.normals[kept] = state.normals[t];
+    state.first_normals[kept] = state.first_normals[t];
     if (!state.wedges.empty()) state.wedges[kept] = state.wedges[t];
     if (!state.groups.empty()) state.groups[kept] = state.groups[t];
     if (!state.has_back.empty()) state.has_back[kept] = state.has_back[t];
@@ -236,6 +237,7 @@ void compact(State& state) {
   }
   state.triangles.resize(kept);
   state.normals.resize(kept + 1);
+  state.first_normals.resize(kept);
   state.normals.back() = {};
   if (!state.wedges.empty()) state.wedges.resize(kept);
   if (!state.groups.empty()) state.groups.resize(kept);

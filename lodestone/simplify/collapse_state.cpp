@@ -204,6 +204,7 @@ void take_triangles(State& state, const Mesh& mesh, const std::vector<std::uint3
   const bool knows_wedges = !mesh.wedge_vertex.empty() || !mesh.attributes.empty();
   state.triangles.resize(n);
   state.normals.resize(n + 1);
+  state.first_normals.resize(n);
   if (knows_wedges) state.wedges.resize(n);
   if (!mesh.face_group.empty()) state.groups.resize(n);
   parallel_for(n, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -211,6 +212,7 @@ void take_triangles(State& state, const Mesh& mesh, const std::vector<std::uint3
       const Triangle& c = renamed[kept[i]];
       state.triangles[i] = c;
       state.normals[i] = triangle_normal(state.positions[c[0]], state.positions[c[1]], state.positions[c[2]]);
+      state.first_normals[i] = PackedDirection(state.normals[i].n);
       if (knows_wedges) state.wedges[i] = mesh.triangles[kept[i]];
       if (!mesh.face_group.empty()) state.groups[i] = mesh.face_group[kept[i]];
     }

@@ -65,6 +65,25 @@ struct alignas(16) Quadric {
   Vec3f position() const { return {x, y, z}; }
 };
 
+/// A direction to within half a degree, 4 bytes.
+class PackedDirection {
+ public:
+  PackedDirection() = default;
+  explicit PackedDirection(Vec3f n) {
+    const float l = length(n);
+    const float scale = l > 0 ? 127 / l : 0;
+    x_ = static_cast<std::int8_t>(n.x * scale);
+    y_ = static_cast<std::int8_t>(n.y * scale);
+    z_ = static_cast<std::int8_t>(n.z * scale);
+  }
+  float dot(Vec3f n) const {
+    return static_cast<float>(x_) * n.x + static_cast<float>(y_) * n.y + static_cast<float>(z_) * n.z;
+  }
+
+ private:
+  std::int8_t x_ = 0, y_ = 0, z_ = 0, unused_ = 0;
+};
+
 /// One accepted collapse, in the working frame.
 struct Step {
   std::uint32_t kept, removed;  ///< vertices of the input mesh
@@ -143,13 +162,14 @@ struct State {
   // their lowest vertices, so that neighbours are near in memory. A triangle that has vanished names kNone.
   std::vector<Vec3f> positions;
   std::vector<VertexClass> classes;
-  std::vector<float> drift;             ///< how far the surface here is from the input, about; working frame
-  std::vector<float> weights;           ///< EdgeCollapseOptions::weights; empty = 1
-  std::vector<std::uint32_t> original;  ///< vertex of the input mesh
-  std::vector<Triangle> triangles;      ///< vertices
-  std::vector<TriangleNormal> normals;  ///< of the triangles, zero for vanished ones; one more at the end, zero
-  std::vector<Triangle> wedges;         ///< wedges of the input mesh; empty when the run need not know them
-  std::vector<std::uint32_t> groups;    ///< face group of each triangle; empty when there is one
+  std::vector<float> drift;                    ///< how far the surface here is from the input, about; working frame
+  std::vector<float> weights;                  ///< EdgeCollapseOptions::weights; empty = 1
+  std::vector<std::uint32_t> original;         ///< vertex of the input mesh
+  std::vector<Triangle> triangles;             ///< vertices
+  std::vector<TriangleNormal> normals;         ///< of the triangles, zero for vanished ones; one more at the end, zero
+  std::vector<PackedDirection> first_normals;  ///< of the triangles, as the input has them
+  std::vector<Triangle> wedges;                ///< wedges of the input mesh; empty when the run need not know them
+  std::vector<std::uint32_t> groups;           ///< face group of each triangle; empty when there is one
   /// Triangles that stand for their back, too: an input triangle on the same wedges turned the other way, which follows
   /// wherever this one goes. Empty when there is none.
   std::vector<std::uint8_t> has_back;

@@ -169,6 +169,8 @@ bool Sweeper::flips(const Candidate& candidate, bool moved) {
       const float d = dot(before, after);
       const float squares = before_sq * after_sq;
       if (!(d > 0 && d * d > kMinTurnCosineSq * squares)) return true;
+      const PackedDirection first = state_.first_normals[c.triangle];
+      if (first.dot(after) < 0 && first.dot(before) >= 0) return true;  // little by little it has turned over
       turns_.back() = d * d > kTurnsLittleSq * squares ? 0 : 1;
       if (after_sq < kNeedleSineSq * length_sq(a) * length_sq(b) && after_sq < before_sq) return true;
     }

@@ -165,6 +165,7 @@ void release_mesh(State& state) {
   state.drift = {};
   state.triangles = state.wedges = {};
   state.normals = {};
+  state.first_normals = {};
   state.quadrics = {};
   state.notes = {};
   state.classes = {};
