@@ -188,15 +188,15 @@ void EdgeEvaluator::flush() {
     terms.inverse_root[t] = rows[3];
   }
   const EdgePlacement<Float4> p = place_freely(terms);
+  const Float4 cost = p.cost, mean_square = p.mean_square;
   const Float4 x = v.f[3] + p.position.x, y = v.f[7] + p.position.y, z = v.f[11] + p.position.z;
   for (std::size_t i = 0; i < waiting_; ++i) {
     Candidate& candidate = out_[place_[i]];
     candidate.position = {x[i], y[i], z[i]};
-    candidate.cost = p.cost[i];
+    candidate.cost = cost[i];
     if (state_.attributes.blocks > 0) candidate.cost += attributes_of(candidate, true, first_[i], second_[i]);
-    candidate.cost =
-        std::max(candidate.cost, state_.cost_of_drift(candidate.kept, candidate.removed, p.mean_square[i])) *
-        state_.weight_of(candidate.kept, candidate.removed);
+    candidate.cost = std::max(candidate.cost, state_.cost_of_drift(candidate.kept, candidate.removed, mean_square[i])) *
+                     state_.weight_of(candidate.kept, candidate.removed);
   }
   waiting_ = 0;
 }
