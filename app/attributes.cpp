@@ -100,7 +100,8 @@ void tell_of_attributes(const Model& model, const chain::Influence& influence, s
                     "(--influences 0 keeps all)",
                     with_separators(cut), influence.max_influences));
   }
-  for (const auto& [name, weight] : influence.attribute_weights.by_name) {
+  for (const auto& weight : influence.attribute_weights.by_name) {
+    const std::string& name = weight.first;
     const bool known = std::any_of(model.meshes.begin(), model.meshes.end(), [&](const Mesh& mesh) {
       return std::any_of(mesh.attributes.begin(), mesh.attributes.end(),
                          [&](const AttributeStream& stream) { return stream.name == name; });

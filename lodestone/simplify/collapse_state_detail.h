@@ -65,7 +65,7 @@ struct alignas(16) Quadric {
   Vec3f position() const { return {x, y, z}; }
 };
 
-/// A direction to within half a degree, 4 bytes.
+/// A direction to within half a degree, 3 bytes.
 class PackedDirection {
  public:
   PackedDirection() = default;
@@ -81,7 +81,7 @@ class PackedDirection {
   }
 
  private:
-  std::int8_t x_ = 0, y_ = 0, z_ = 0, unused_ = 0;
+  std::int8_t x_ = 0, y_ = 0, z_ = 0;
 };
 
 /// One accepted collapse, in the working frame.

@@ -101,7 +101,7 @@ TEST(CollapseAttributes, no_triangle_turns_over_in_its_texture) {
 
 TEST(CollapseAttributes, values_never_leave_the_range_of_the_input) {
   const Mesh in = with_stream(test::torus(40), "COLOR_0", Semantic::color, 4, [](Vec3f p, float* c) {
-    for (int k = 0; k < 4; ++k) c[k] = std::sin(9.0 * double{p.x} + k) > 0 ? 1.0F : 0.0F;
+    for (std::size_t k = 0; k < 4; ++k) c[k] = std::sin(9.0 * double{p.x} + static_cast<double>(k)) > 0 ? 1.0F : 0.0F;
   });
   for (const std::size_t target : {1000, 200, 40}) {
     const Mesh out = collapse(in, target).mesh;
