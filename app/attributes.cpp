@@ -42,7 +42,7 @@ OptionGroup level_attributes_group() {
   return {"Attributes",
           {{"--attribute-weights",
             "",
-            "NAME=W,…",
+            "NAME=W,...",
             "",
             "",
             "what errors of attributes count, as a multiple of the usual: normal, uv, color, morph, generic, or a "
