@@ -66,6 +66,8 @@ Json build_json(const BuildReport& report) {
 
 Json directed_json(const measure::DirectedDistance& d) {
   return {{"max", d.sampled_max},
+          {"sharpened_max", d.max},
+          {"bound", d.bound},
           {"mean", d.mean},
           {"rms", d.rms},
           {"max_at", {d.max_at.x, d.max_at.y, d.max_at.z}},
@@ -171,6 +173,9 @@ std::string to_json(const MeasureReport& report) {
   json["relative_max"] = d.relative(d.sampled_max);
   json["sharpened_max"] = d.max;
   json["relative_sharpened_max"] = d.relative(d.max);
+  json["bound"] = d.bound;
+  json["relative_bound"] = d.relative(d.bound);
+  json["is_bounded"] = d.is_bounded;
   json["relative_mean"] = d.relative(d.mean);
   json["relative_rms"] = d.relative(d.rms);
   json["forward"] = directed_json(d.forward);

@@ -45,18 +45,18 @@ std::string table_of(const MeasureReport& report) {
   const measure::Distance& d = report.distance;
   Table table;
   table.add_column(report.unit.empty() ? "distance" : "distance (" + report.unit + ")", Table::Align::left);
-  for (const char* title : {"max", "sharpened max", "mean", "rms", "normals"}) table.add_column(title);
+  for (const char* title : {"max", "sharpened max", "at most", "mean", "rms", "normals"}) table.add_column(title);
   const auto degrees = [](double value) { return fmt::format("{:.2f} deg", value); };
   const auto row = [&](const char* name, const measure::DirectedDistance& one) {
-    table.add_row({name, short_number(one.sampled_max), short_number(one.max), short_number(one.mean),
-                   short_number(one.rms), degrees(one.normal_degrees)});
+    table.add_row({name, short_number(one.sampled_max), short_number(one.max), short_number(one.bound),
+                   short_number(one.mean), short_number(one.rms), degrees(one.normal_degrees)});
   };
   row("A to B", d.forward);
   row("B to A", d.backward);
-  table.add_row({"both", short_number(d.sampled_max), short_number(d.max), short_number(d.mean), short_number(d.rms),
-                 degrees(d.normal_degrees)});
+  table.add_row({"both", short_number(d.sampled_max), short_number(d.max), short_number(d.bound), short_number(d.mean),
+                 short_number(d.rms), degrees(d.normal_degrees)});
   table.add_row({"of the diagonal", percent(d.relative(d.sampled_max)), percent(d.relative(d.max)),
-                 percent(d.relative(d.mean)), percent(d.relative(d.rms)), ""});
+                 percent(d.relative(d.bound)), percent(d.relative(d.mean)), percent(d.relative(d.rms)), ""});
   const std::string attributes = report.attributes ? table_of(*report.attributes) : "";
   return table.text() + attributes +
          fmt::format("\n{} samples a direction, diagonal of A {}, {} s\n", with_separators(d.samples),

@@ -17,7 +17,7 @@ void measure_levels(benchmark::State& state, const Model& a, const Model& b, std
   const Task task = Task::root({}, threads);
   measure::DistanceOptions options;
   options.samples = samples;
-  options.sharpen = false;
+  options.bound = false;
   for ([[maybe_unused]] const auto& turn : state) {
     const auto reference = measure::Reference::create(a, task);
     benchmark::DoNotOptimize(reference->distance_to(b, options, task));

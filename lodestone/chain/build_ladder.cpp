@@ -104,11 +104,11 @@ Result<Cut> make_cut(const CollapsePlan& plan, std::size_t prefix, const Referen
   cut.level.method = "edge collapse";
   cut.level.seconds = cut.simplify_seconds + cut.measure_seconds;
   LevelError& e = cut.level.error;
-  e.error = e.measured_error = d->max;
+  e.error = e.measured_error = d->trusted_max();
   e.mean_error = d->mean;
   e.rms_error = d->rms;
   e.diagonal = d->diagonal;
-  e.kind = ErrorKind::measured;
+  e.kind = d->is_bounded ? ErrorKind::bounded : ErrorKind::measured;
   e.samples = d->samples;
   return cut;
 }

@@ -23,7 +23,7 @@ const char* to_string(ErrorKind kind);
 /// Distance of a level to the original, model units (world space of the default scene).
 struct LevelError {
   double error = 0;           ///< largest measured_error of this and all finer levels: never falls along a ladder
-  double measured_error = 0;  ///< two-sided maximum distance
+  double measured_error = 0;  ///< two-sided maximum distance: its bound where kind says so, else the largest found
   double mean_error = 0;      ///< half the sum of both directions' means, over area-weighted samples
   double rms_error = 0;       ///< root of half the sum of both directions' mean squares
   double diagonal = 0;        ///< of the original's bounding box; relative errors are divided by it

@@ -1,6 +1,5 @@
 // Method   area-weighted stratified samples and all vertices, each to its closest point on the other surface; then the
-// surface around
-//          the worst of them is subdivided until the maximum stands
+//          maximum is bounded from above (hausdorff.cpp)
 // Cost     O((samples + vertices) log triangles); neighbouring queries hand each other a hint
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 #include "lodestone/base/parallel.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/measure/directed_detail.h"
+#include "lodestone/measure/hausdorff_detail.h"
 #include "lodestone/measure/sampling_detail.h"
 
 namespace lodestone::measure::detail {
@@ -18,39 +18,15 @@ namespace lodestone::measure::detail {
 namespace {
 
 constexpr std::size_t kChunk = 4096;
-constexpr std::size_t kWorst = 32;  // candidates for sharpening, a chunk and in all
-
-struct Peak {
-  double distance_sq = -1;
-  std::uint32_t triangle = kNone;  // of the first surface
-  Vec3d at;
-};
-
-bool is_higher(const Peak& a, const Peak& b) {
-  return a.distance_sq != b.distance_sq ? a.distance_sq > b.distance_sq : a.triangle < b.triangle;
-}
-
-// The highest peaks, at most one a triangle, highest first.
-struct Peaks {
-  std::vector<Peak> list;
-
-  void add(const Peak& peak) {
-    if (list.size() == kWorst && !is_higher(peak, list.back())) return;
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      if (list[i].triangle != peak.triangle) continue;
-      if (!is_higher(peak, list[i])) return;
-      list.erase(list.begin() + static_cast<std::ptrdiff_t>(i));
-      break;
-    }
-    list.insert(std::upper_bound(list.begin(), list.end(), peak, is_higher), peak);
-    if (list.size() > kWorst) list.pop_back();
-  }
-};
 
 struct Sums {
   double distance = 0, distance_sq = 0, degrees = 0;
   std::uint64_t samples = 0, with_normal = 0;
-  Peaks peaks;
+  Peak peak;
+
+  void add(const Peak& other) {
+    if (is_higher(other, peak)) peak = other;
+  }
 };
 
 Sums join(Sums a, const Sums& b) {
@@ -59,7 +35,7 @@ Sums join(Sums a, const Sums& b) {
   a.degrees += b.degrees;
   a.samples += b.samples;
   a.with_normal += b.with_normal;
-  for (const Peak& peak : b.peaks.list) a.peaks.add(peak);
+  a.add(b.peak);
   return a;
 }
 
@@ -84,7 +60,7 @@ Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const
       sums.degrees += std::acos(std::clamp(dot(n, m), -1.0, 1.0)) * 180 / std::numbers::pi;
       ++sums.with_normal;
     }
-    sums.peaks.add({nearest.distance_sq, sample.triangle, sample.point});
+    sums.add({nearest.distance_sq, sample.triangle, sample.point});
   });
   return sums;
 }
@@ -98,65 +74,19 @@ std::vector<std::uint32_t> triangle_of_vertices(const spatial::Surface& surface)
   return triangle;
 }
 
-Sums measure_vertices(const spatial::Surface& from, const spatial::Bvh& to, const std::vector<std::uint32_t>& triangle,
-                      std::size_t begin, std::size_t end) {
-  Sums sums;
+Peak measure_vertices(const spatial::Surface& from, const spatial::Bvh& to, const std::vector<std::uint32_t>& triangle,
+                      std::vector<VertexDistance>& at_vertices, std::size_t begin, std::size_t end) {
+  Peak highest;
   std::uint32_t hint = kNone;
   for (std::size_t v = begin; v < end; ++v) {
     if (triangle[v] == kNone) continue;
     const spatial::Nearest nearest = to.closest(from.positions[v], hint);
     hint = nearest.triangle;
-    sums.peaks.add({nearest.distance_sq, triangle[v], from.positions[v]});
+    at_vertices[v] = {std::sqrt(nearest.distance_sq), nearest.triangle};
+    const Peak peak{nearest.distance_sq, triangle[v], from.positions[v]};
+    if (is_higher(peak, highest)) highest = peak;
   }
-  return sums;
-}
-
-// Cuts the triangle of a peak into ever smaller quarters where the distance could still exceed the maximum by 1 %:
-// nowhere on a piece is it more than at its centre plus the piece's radius. Bounded by a budget of queries.
-Peak sharpen_peak(const spatial::Surface& from, const spatial::Bvh& to, const Peak& peak, double known_max) {
-  struct Piece {
-    std::array<Vec3d, 3> corners;
-    double distance, reach;
-  };
-  Peak best = peak;
-  double max = std::max(known_max, std::sqrt(peak.distance_sq));
-  std::uint32_t hint = kNone;
-  int budget = 2000;
-  const auto measured = [&](const std::array<Vec3d, 3>& c) {
-    const Vec3d center = (c[0] + c[1] + c[2]) / 3.0;
-    const spatial::Nearest nearest = to.closest(center, hint);
-    hint = nearest.triangle;
-    --budget;
-    if (nearest.distance_sq > best.distance_sq) best = {nearest.distance_sq, peak.triangle, center};
-    const double d = std::sqrt(nearest.distance_sq);
-    max = std::max(max, d);
-    return Piece{c, d,
-                 std::sqrt(std::max({length_sq(c[0] - center), length_sq(c[1] - center), length_sq(c[2] - center)}))};
-  };
-  const auto promise = [](const Piece& a, const Piece& b) { return a.distance + a.reach < b.distance + b.reach; };
-  std::vector<Piece> heap{measured(from.corners(peak.triangle))};
-  while (!heap.empty() && budget > 0) {
-    std::pop_heap(heap.begin(), heap.end(), promise);
-    const Piece piece = heap.back();
-    heap.pop_back();
-    if (piece.distance + piece.reach <= 1.01 * max) break;
-    const auto [a, b, c] = piece.corners;
-    const Vec3d ab = (a + b) * 0.5, bc = (b + c) * 0.5, ca = (c + a) * 0.5;
-    for (const std::array<Vec3d, 3>& quarter : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}) {
-      heap.push_back(measured(quarter));
-      std::push_heap(heap.begin(), heap.end(), promise);
-    }
-  }
-  return best;
-}
-
-Peak sharpen(const spatial::Surface& from, const spatial::Bvh& to, const Peaks& peaks, const Task& task) {
-  const double known = std::sqrt(peaks.list.front().distance_sq);
-  std::vector<Peak> found(peaks.list.size());
-  parallel_for(found.size(), 1, task, [&](std::size_t i, std::size_t, std::size_t) {
-    found[i] = sharpen_peak(from, to, peaks.list[i], known);
-  });
-  return *std::min_element(found.begin(), found.end(), is_higher);
+  return highest;
 }
 
 }  // namespace
@@ -175,19 +105,26 @@ DirectedDistance directed_distance(const spatial::Surface& from, const spatial::
       },
       join);
   const std::vector<std::uint32_t> triangle = triangle_of_vertices(from);
-  sums = join(
-      std::move(sums),
-      parallel_reduce(
-          from.positions.size(), kChunk, task, Sums{},
-          [&](std::size_t begin, std::size_t end) { return measure_vertices(from, to, triangle, begin, end); }, join));
+  std::vector<VertexDistance> at_vertices(from.positions.size());
+  sums.add(parallel_reduce(
+      from.positions.size(), kChunk, task, Peak{},
+      [&](std::size_t begin, std::size_t end) { return measure_vertices(from, to, triangle, at_vertices, begin, end); },
+      [](const Peak& a, const Peak& b) { return is_higher(b, a) ? b : a; }));
   DirectedDistance out;
-  if (task.cancelled() || sums.peaks.list.empty()) return out;
-  Peak peak = sums.peaks.list.front();
-  out.sampled_max = std::sqrt(peak.distance_sq);
-  if (options.sharpen && peak.distance_sq > 0) peak = sharpen(from, to, sums.peaks, task);
+  if (task.cancelled() || sums.peak.triangle == kNone) return out;
+  out.sampled_max = std::sqrt(sums.peak.distance_sq);
+  MaximumBound bound{sums.peak, std::numeric_limits<double>::infinity()};
+  if (options.bound) {
+    const double diagonal = std::max(from.bounds.diagonal(), to.surface().bounds.diagonal());
+    const std::uint64_t triangles = from.triangles.size() + to.surface().triangles.size();
+    const BoundOptions search{options.tolerance, kBoundFloor * diagonal,
+                              options.queries > 0 ? options.queries : 2 * (samples + triangles)};
+    bound = bound_maximum(from, to, at_vertices, sums.peak, search, task.part(0.3));
+  }
   if (task.cancelled()) return out;
-  out.max = std::sqrt(peak.distance_sq);
-  out.max_at = peak.at;
+  out.max = std::sqrt(bound.peak.distance_sq);
+  out.max_at = bound.peak.at;
+  out.bound = bound.upper;
   if (sums.samples > 0) {
     const auto n = static_cast<double>(sums.samples);
     out.mean = sums.distance / n;

@@ -38,6 +38,8 @@ Result<Distance> Reference::distance_to(const Model& level, const DistanceOption
   out.backward = detail::directed_distance(*surface, data_->tree, options, task.part(0.5));
   if (task.cancelled()) return cancelled_error("measuring");
   out.max = std::max(out.forward.max, out.backward.max);
+  out.bound = std::max(out.forward.bound, out.backward.bound);
+  out.is_bounded = out.bound <= detail::bound_goal(out.max, std::max(diagonal(), surface->bounds.diagonal()), options);
   out.sampled_max = std::max(out.forward.sampled_max, out.backward.sampled_max);
   out.mean = (out.forward.mean + out.backward.mean) / 2;
   out.rms = std::sqrt((out.forward.rms * out.forward.rms + out.backward.rms * out.backward.rms) / 2);

@@ -13,15 +13,19 @@ namespace lodestone::measure {
 struct DistanceOptions {
   std::uint64_t samples = 200'000;  ///< points on each surface, area-weighted and stratified; all vertices come on top
   std::uint64_t seed = 1;
-  /// Subdivide the surface around the worst samples until the maximum moves by less than 1 %.
-  bool sharpen = true;
+  /// Bound the maximum from above, by subdividing where the distance could be larger than what was found.
+  bool bound = true;
+  double tolerance = 0.01;  ///< of the maximum: how far the bound may lie above it
+  /// Closest points that bounding may look up a direction; 0: two a sample and two a triangle of both surfaces.
+  std::uint64_t queries = 0;
 };
 
 /// From one surface to the other. Mean, rms and normal angle are over the samples only, the maximum over vertices too.
 struct DirectedDistance {
-  double max = 0, mean = 0, rms = 0;  ///< model units; max is sharpened when asked for
+  double max = 0, mean = 0, rms = 0;  ///< model units; max is the largest distance found
   double sampled_max = 0;             ///< largest of the samples and vertices alone, as other tools tell it
-  Vec3d max_at;                       ///< where on the first surface
+  double bound = 0;                   ///< certified: the true maximum is not larger; infinite when not asked for
+  Vec3d max_at;                       ///< where on the first surface max was found
   double normal_degrees = 0;          ///< mean angle between the faces' normals, 0 to 180
 };
 
@@ -29,12 +33,18 @@ struct Distance {
   DirectedDistance forward;   ///< from the original A to B
   DirectedDistance backward;  ///< from B to A
   double max = 0;             ///< the larger of both maxima
+  double bound = 0;           ///< the larger of both bounds
   double sampled_max = 0;     ///< the larger of both sampled maxima
   double mean = 0;            ///< half the sum of both means
   double rms = 0;             ///< root of half the sum of both mean squares
   double normal_degrees = 0;  ///< half the sum of both
   double diagonal = 0;        ///< of A's bounding box
   std::uint64_t samples = 0;  ///< a direction
+
+  /// Whether the bound is as near to the maximum as was asked: 1 % (or 1e-6 of the diagonal) unless told otherwise.
+  bool is_bounded = false;
+  /// The maximum to rely on: the bound where it was reached, else the largest distance found.
+  double trusted_max() const { return is_bounded ? bound : max; }
 
   double relative(double value) const { return diagonal > 0 ? value / diagonal : 0; }
 };

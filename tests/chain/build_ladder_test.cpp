@@ -34,10 +34,10 @@ TEST(BuildLadder, halves_by_default_and_measures_every_level) {
     EXPECT_GE(levels[i].error.error, levels[i - 1].error.error) << "errors never fall";
     EXPECT_GE(levels[i].error.error, levels[i].error.measured_error);
     EXPECT_GT(levels[i].error.mean_error, 0);
-    EXPECT_EQ(levels[i].error.kind, ErrorKind::measured);
+    EXPECT_EQ(levels[i].error.kind, ErrorKind::bounded);
     EXPECT_GE(levels[i].error.samples, 200'000U);
     const auto again = measure::distance(r.ladder.original, r.ladder.model(i));
-    EXPECT_EQ(again->max, levels[i].error.measured_error) << "what the level says is what measuring says";
+    EXPECT_EQ(again->trusted_max(), levels[i].error.measured_error) << "what the level says is what measuring says";
     EXPECT_TRUE(topology_of(levels[i].model.meshes[0]).closed);
   }
 }

@@ -26,7 +26,7 @@ class Json(Scratch):
             self.assertGreaterEqual(coarse["error"], fine["error"])
             self.assertGreaterEqual(coarse["error"], coarse["measured_error"])
             self.assertAlmostEqual(coarse["relative_error"], coarse["error"] / diagonal, 12)
-            self.assertEqual(coarse["error_kind"], "measured")
+            self.assertEqual(coarse["error_kind"], "bounded")
             # One pixel of 1,080 lines over 45 degrees.
             distance = coarse["error"] * 1080 / (2 * math.tan(math.pi / 8))
             self.assertAlmostEqual(coarse["switch_distance"] / distance, 1, 9)

@@ -54,8 +54,8 @@ TEST(Distance, both_directions_count) {
   EXPECT_NEAR(d.mean, 0.0625, 1e-3);
 }
 
-// The peak of a roof that is cut off: few samples miss it, sharpening finds it.
-TEST(Distance, sharpening_finds_the_maximum_inside_a_large_face) {
+// The peak of a roof that is cut off: few samples miss it, bounding finds it.
+TEST(Distance, bounding_finds_the_maximum_inside_a_large_face) {
   const Mesh flat = test::make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}});
   const Mesh roof = test::make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.37F, 0.61F, 0.2F}},
                                     {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}});
@@ -64,6 +64,46 @@ TEST(Distance, sharpening_finds_the_maximum_inside_a_large_face) {
   const auto reference = distance(make_model(flat), make_model(roof), {2'000'000, 1, true});
   EXPECT_LT(rough->forward.max, sharp->forward.max);
   EXPECT_NEAR(sharp->forward.max, reference->forward.max, 0.01 * reference->forward.max);
+  EXPECT_FALSE(rough->is_bounded);
+  EXPECT_TRUE(sharp->is_bounded);
+}
+
+// Whatever the triangles: no point of one surface is farther from the other than the bound, and some point is nearly as
+// far.
+TEST(Distance, bounds_hold_for_any_triangles) {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    const Mesh a = test::soup(seed, 9, static_cast<int>(1 + seed % 7)),
+               b = test::soup(seed + 1000, 9, static_cast<int>(1 + seed % 5));
+    const auto d = distance(make_model(a), make_model(b), {50, seed, true, 0.01, 100'000});
+    const auto dense = distance(make_model(a), make_model(b), {100'000, seed, false});
+    ASSERT_TRUE(d && dense);
+    EXPECT_TRUE(d->is_bounded) << seed;
+    EXPECT_LE(d->bound, 1.01 * d->max) << seed;
+    EXPECT_GE(d->forward.bound, dense->forward.max) << seed;
+    EXPECT_GE(d->backward.bound, dense->backward.max) << seed;
+    EXPECT_GE(d->trusted_max(), dense->max) << seed;
+  }
+}
+
+// Simplified meshes: triangles of one span edges and corners of the other, where bounds are hardest to get.
+TEST(Distance, bounds_hold_for_a_coarser_mesh) {
+  for (const int n : {3, 5, 8, 13}) {
+    const auto d = distance(make_model(test::torus(40)), make_model(test::torus(n)), {1000, 1, true, 0.01, 1'000'000});
+    const auto dense = distance(make_model(test::torus(40)), make_model(test::torus(n)), {200'000, 1, false});
+    ASSERT_TRUE(d && dense);
+    EXPECT_TRUE(d->is_bounded) << n;
+    EXPECT_GE(d->bound, dense->max) << n;
+    EXPECT_LE(d->bound, 1.01 * d->max) << n;
+  }
+}
+
+// Too few queries: the bound is far above, still true, and not called reached.
+TEST(Distance, a_bound_that_was_given_up_still_holds) {
+  const auto d = distance(make_model(test::torus(60)), make_model(test::torus(50)), {1000, 1, true, 0.001, 10});
+  const auto dense = distance(make_model(test::torus(60)), make_model(test::torus(50)), {1'000'000, 1, false});
+  EXPECT_FALSE(d->is_bounded);
+  EXPECT_GE(d->bound, dense->max);
+  EXPECT_EQ(d->trusted_max(), d->max);
 }
 
 TEST(Distance, same_figures_for_any_thread_count) {
@@ -71,6 +111,7 @@ TEST(Distance, same_figures_for_any_thread_count) {
   const Distance one = measured(a, b, 30'000, 1), two = measured(a, b, 30'000, 2), seven = measured(a, b, 30'000, 7);
   for (const Distance* d : {&two, &seven}) {
     EXPECT_EQ(one.max, d->max);
+    EXPECT_EQ(one.bound, d->bound);
     EXPECT_EQ(one.mean, d->mean);
     EXPECT_EQ(one.rms, d->rms);
     EXPECT_EQ(one.normal_degrees, d->normal_degrees);
