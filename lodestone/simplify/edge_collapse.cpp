@@ -56,6 +56,9 @@ Result<void> check(const Mesh& mesh, const EdgeCollapseOptions& options) {
   return {};
 }
 
+// A dihedral angle of 0.1 degrees.
+constexpr float kBladeCosine = 0.9999985F;
+
 struct Run {
   std::vector<Step> steps;
   std::vector<WedgeMerge> merges;
@@ -79,7 +82,12 @@ Run run_passes(State& state, const EdgeCollapseOptions& options, const Task& tas
     reported = std::max(reported, done);
     const bool over = std::any_of(run.steps.begin() + static_cast<std::ptrdiff_t>(before), run.steps.end(),
                                   [&](const Step& s) { return s.error > error_limit; });
-    if (over || (collapses == 0 && share >= 1)) break;
+    if (over) break;
+    if (collapses == 0 && share >= 1) {
+      // Thin bars and plates have no other way left than to end in a blade.
+      if (state.fold_cosine >= kBladeCosine) break;
+      state.fold_cosine = kBladeCosine;
+    }
     if (collapses * 50 < vertices) share = std::min(1.0, share * 2);
   }
   return run;

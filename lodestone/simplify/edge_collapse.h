@@ -40,7 +40,8 @@ struct EdgeCollapseOptions {
   /// simplified as it is seen. Its translation is ignored; a singular one counts as identity.
   Mat4d metric;
   /// No collapse may leave two triangles at an edge whose dihedral angle is below the angle of this cosine where there
-  /// was none (threshold beta of paper 001, section 3.2); 1 = any fold is allowed. 10 degrees.
+  /// was none (threshold beta of paper 001, section 3.2); 1 = any fold is allowed. 10 degrees. Once no other collapse
+  /// is left anywhere, angles down to 0.1 degrees are allowed: thin bars end in blades.
   float fold_cosine = 0.98481F;
   bool record_log = false;  ///< fill EdgeCollapseResult::log
 };

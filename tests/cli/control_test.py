@@ -38,9 +38,9 @@ class Control(Scratch):
     def test_a_lattice_keeps_its_area(self):
         self.lod("sample", "tower", "-o", "tower.glb")
         area = self.json("info", "tower.glb")["area"]
-        self.json("simplify", "tower.glb", "-o", "thin.ply", "--ratio", "25%", "--samples", "2000")
-        self.json("simplify", "tower.glb", "-o", "kept.ply", "--ratio", "25%", "--keep-area", "--samples", "2000")
-        self.assertLess(self.json("info", "thin.ply")["area"], 0.8 * area)
+        self.json("simplify", "tower.glb", "-o", "thin.ply", "--ratio", "15%", "--samples", "2000")
+        self.json("simplify", "tower.glb", "-o", "kept.ply", "--ratio", "15%", "--keep-area", "--samples", "2000")
+        self.assertLess(self.json("info", "thin.ply")["area"], 0.7 * area)
         self.assertAlmostEqual(self.json("info", "kept.ply")["area"] / area, 1, delta=0.03)
 
     def test_prune_does_nothing_to_a_model_of_one_part(self):
