@@ -101,13 +101,16 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
   table.add_column("relative");
   table.add_column("1 px from" + unit);
   for (const char* title : {"bytes", "seconds"}) table.add_column(title);
+  bool all_certain = true;
   for (const LevelReport& level : report.levels) {
     const double share =
         static_cast<double>(level.triangles) / static_cast<double>(std::max<std::size_t>(1, report.triangles));
     std::vector<std::string> row{fmt::format("{}", level.level), with_separators(level.triangles), percent(share)};
     if (level.vanished_parts) row.push_back(with_separators(*level.vanished_parts));
+    const bool certain = level.level == 0 || level.error.kind == ErrorKind::bounded;
+    all_certain = all_certain && certain;
     for (const std::string& cell :
-         {short_number(level.error.error), percent(level.error.relative(level.error.error)),
+         {(certain ? "" : "~") + short_number(level.error.error), percent(level.error.relative(level.error.error)),
           short_number(level.switch_distance), human_bytes(level.bytes), seconds_text(level.seconds)}) {
       row.push_back(cell);
     }
@@ -119,6 +122,8 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
     out = fmt::format("{} -> {} ... {}\n{}", printable(report.input), printable(report.levels.front().file),
                       printable(report.levels.back().file), table.text());
   }
+  out += all_certain ? "errors are certified: no point of either surface is farther from the other\n"
+                     : "errors are certified, but for those with ~: the largest that was found\n";
   return out + fmt::format(
                    "{} in all, {} s; 1 px from: the distance from which the error is at most a pixel ({} lines, {} "
                    "degrees)\n",

@@ -116,10 +116,10 @@ DirectedDistance directed_distance(const spatial::Surface& from, const spatial::
   MaximumBound bound{sums.peak, std::numeric_limits<double>::infinity()};
   if (options.bound) {
     const double diagonal = std::max(from.bounds.diagonal(), to.surface().bounds.diagonal());
-    const std::uint64_t triangles = from.triangles.size() + to.surface().triangles.size();
     const BoundOptions search{options.tolerance, kBoundFloor * diagonal,
-                              options.queries > 0 ? options.queries : 2 * (samples + triangles)};
-    bound = bound_maximum(from, to, at_vertices, sums.peak, search, task.part(0.3));
+                              options.queries > 0 ? options.queries : samples};
+    bound = bound_maximum(from, to, spatial::triangle_neighbors(to.surface()), at_vertices, sums.peak, search,
+                          task.part(0.3));
   }
   if (task.cancelled()) return out;
   out.max = std::sqrt(bound.peak.distance_sq);

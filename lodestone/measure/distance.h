@@ -16,7 +16,7 @@ struct DistanceOptions {
   /// Bound the maximum from above, by subdividing where the distance could be larger than what was found.
   bool bound = true;
   double tolerance = 0.01;  ///< of the maximum: how far the bound may lie above it
-  /// Closest points that bounding may look up a direction; 0: two a sample and two a triangle of both surfaces.
+  /// Closest points that bounding may look up a direction; 0: one a sample.
   std::uint64_t queries = 0;
 };
 

@@ -18,9 +18,10 @@ namespace lodestone::measure::detail {
 
 namespace {
 
-constexpr std::size_t kChunk = 4096;  // triangles that are searched together, by one thread
-constexpr double kLeast = 0.15;       // of a side: where a cut may lie
-constexpr int kSteps = 6;             // towards the point between two triangles
+constexpr std::size_t kChunk = 4096;    // triangles that are searched together, by one thread
+constexpr double kLeast = 0.15;         // of a side: where a cut may lie
+constexpr std::uint64_t kHopeless = 1;  // pieces a query left
+constexpr int kSteps = 6;               // towards the point between two triangles
 
 struct Corner {
   Vec3d at;
@@ -38,10 +39,11 @@ bool is_lower(const Piece& a, const Piece& b) { return a.upper < b.upper; }
 
 class Search {
  public:
-  Search(const spatial::Surface& from, const spatial::Bvh& to, std::span<const VertexDistance> at_vertices,
-         const Peak& known, const BoundOptions& options)
+  Search(const spatial::Surface& from, const spatial::Bvh& to, const Neighbors& neighbors,
+         std::span<const VertexDistance> at_vertices, const Peak& known, const BoundOptions& options)
       : from_(from),
         to_(to),
+        graph_(to.surface(), neighbors),
         at_vertices_(at_vertices),
         options_(options),
         best_(known),
@@ -60,6 +62,8 @@ class Search {
 
   MaximumBound run(std::uint64_t queries, const Task& task) {
     for (; !heap_.empty() && heap_.front().upper > limit(); --queries) {
+      // No use to go on for long where most pieces would still be left at the end.
+      if (heap_.size() > kHopeless * queries) queries -= queries / 64;
       if (queries == 0 || task.cancelled()) return {best_, heap_.front().upper};
       std::pop_heap(heap_.begin(), heap_.end(), is_lower);
       const Piece piece = heap_.back();
@@ -120,7 +124,7 @@ class Search {
     keep_if_needed(half);
   }
 
-  double bound_of(const Piece& piece) const {
+  double bound_of(const Piece& piece) {
     const auto& [a, b, c] = piece.corners;
     const double highest = std::max({a.distance, b.distance, c.distance});
     if (a.triangle == b.triangle && b.triangle == c.triangle) return highest;
@@ -128,6 +132,9 @@ class Search {
     const double side = std::sqrt(std::max({length_sq(b.at - a.at), length_sq(c.at - b.at), length_sq(a.at - c.at)}));
     const double reach = highest + side * 0.57735026918962584;
     if (reach <= limit()) return reach;
+    const std::uint32_t start[3] = {a.triangle, b.triangle, c.triangle};
+    const double graph = graph_({a.at, b.at, c.at}, start, limit());
+    if (graph <= limit()) return graph;
     const double by_one = bound_by_one(a, b, c);
     if (by_one <= limit()) return by_one;
     if (a.triangle == b.triangle) return std::min({reach, by_one, bound_of_two(a, b, c)});
@@ -206,6 +213,7 @@ class Search {
 
   const spatial::Surface& from_;
   const spatial::Bvh& to_;
+  GraphBound graph_;
   std::span<const VertexDistance> at_vertices_;
   BoundOptions options_;
   Peak best_;
@@ -224,14 +232,14 @@ bool is_higher(const Peak& a, const Peak& b) {
   return a.distance_sq != b.distance_sq ? a.distance_sq > b.distance_sq : a.triangle < b.triangle;
 }
 
-MaximumBound bound_maximum(const spatial::Surface& from, const spatial::Bvh& to,
+MaximumBound bound_maximum(const spatial::Surface& from, const spatial::Bvh& to, const Neighbors& neighbors,
                            std::span<const VertexDistance> at_vertices, const Peak& known, const BoundOptions& options,
                            const Task& task) {
   const std::size_t triangles = from.triangles.size();
   return parallel_reduce(
       triangles, kChunk, task, MaximumBound{known, std::sqrt(known.distance_sq)},
       [&](std::size_t begin, std::size_t end) {
-        Search search(from, to, at_vertices, known, options);
+        Search search(from, to, neighbors, at_vertices, known, options);
         for (std::size_t t = begin; t < end; ++t) search.add(static_cast<std::uint32_t>(t));
         const double share = static_cast<double>(end - begin) / static_cast<double>(triangles);
         MaximumBound found = search.run(static_cast<std::uint64_t>(share * static_cast<double>(options.queries)), task);

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "lodestone/base/task.h"
+#include "lodestone/measure/graph_bound_detail.h"
 #include "lodestone/spatial/bvh.h"
 
 namespace lodestone::measure::detail {
@@ -35,9 +36,9 @@ struct MaximumBound {
 };
 
 /// The interval that holds max over p in `from` of distance(p, `to`). `known` is the largest distance known so far,
-/// `at_vertices` has one entry a position of `from`. Branch and bound over the triangles of `from`; same figures for
-/// any thread count. O(triangles + queries · log triangles of `to`).
-MaximumBound bound_maximum(const spatial::Surface& from, const spatial::Bvh& to,
+/// `at_vertices` has one entry a position of `from`, `neighbors` are those of `to`. Branch and bound over the triangles
+/// of `from`; same figures for any thread count. O(triangles + queries · log triangles of `to`).
+MaximumBound bound_maximum(const spatial::Surface& from, const spatial::Bvh& to, const Neighbors& neighbors,
                            std::span<const VertexDistance> at_vertices, const Peak& known, const BoundOptions& options,
                            const Task& task);
 
