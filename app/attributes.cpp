@@ -77,7 +77,7 @@ Result<void> read_attribute_options(const Arguments& arguments, chain::Influence
   }
   const Result<std::uint64_t> influences = arguments.count("--influences");
   if (!influences) return fail(influences.error());
-  influence.max_influences = *influences;
+  influence.max_skin_influences = *influences;
   for (const char* option : {"--influences", "--tangents"}) {
     if (!arguments.has(option) || !arguments.has("--only")) continue;
     return fail(ErrorCode::bad_argument, fmt::format("{} does not go with --only", option), {},
@@ -92,13 +92,15 @@ Result<void> read_attribute_options(const Arguments& arguments, chain::Influence
 void tell_of_attributes(const Model& model, const chain::Influence& influence, std::vector<std::string>& warnings) {
   std::size_t cut = 0;
   for (const Mesh& mesh : model.meshes) {
-    cut += influence.max_influences > 0 && influence.only.empty() ? wedges_above(mesh, influence.max_influences) : 0;
+    cut += influence.max_skin_influences > 0 && influence.only.empty()
+               ? wedges_above(mesh, influence.max_skin_influences)
+               : 0;
   }
   if (cut > 0) {
     warnings.push_back(
         fmt::format("on {} corners more joints pull than {}; coarser levels keep the heaviest "
                     "(--influences 0 keeps all)",
-                    with_separators(cut), influence.max_influences));
+                    with_separators(cut), influence.max_skin_influences));
   }
   for (const auto& weight : influence.attribute_weights.by_name) {
     const std::string& name = weight.first;

@@ -40,7 +40,7 @@ Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t sma
   plan.placings_ = largest_placings(original);
   plan.prunes_ = influence.vanishes();
   plan.keep_area_ = influence.keep_area;
-  plan.max_influences_ = influence.max_influences;
+  plan.max_skin_influences_ = influence.max_skin_influences;
   plan.tangents_ = influence.tangents;
   Result<std::vector<std::vector<std::uint8_t>>> untouched = untouched_triangles(original, influence);
   if (!untouched) return fail(untouched.error());
@@ -239,7 +239,7 @@ Result<Mesh> CollapsePlan::mesh_after(std::size_t m, const Progress& progress, d
   if (options.untouched.empty()) {
     if (tangents_ == Tangents::dropped) drop_tangents(replayed->mesh);
     if (tangents_ == Tangents::rebuilt) rebuild_tangents(replayed->mesh);
-    if (max_influences_ > 0) limit_influences(replayed->mesh, max_influences_);
+    if (max_skin_influences_ > 0) limit_influences(replayed->mesh, max_skin_influences_);
   }
   return std::move(replayed->mesh);
 }

@@ -75,7 +75,7 @@ class CollapsePlan {
   std::vector<std::size_t> drawn_after_;  // size() + 1 entries, never rising
   simplify::LockCounts locked_;
   bool prunes_ = false, keep_area_ = false;
-  std::size_t max_influences_ = 0;
+  std::size_t max_skin_influences_ = 0;
   Tangents tangents_ = Tangents::interpolated;
 };
 

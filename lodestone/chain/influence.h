@@ -45,7 +45,8 @@ struct Influence {
   std::vector<TriangleRange> only;
 
   simplify::AttributeWeights attribute_weights;
-  std::size_t max_influences = 4;  ///< skin influences of a wedge in coarser levels; 0, or with `only`: as they are
+  std::size_t max_skin_influences =
+      4;  ///< skin influences of a wedge in coarser levels; 0, or with `only`: as they are
   Tangents tangents = Tangents::interpolated;  ///< with `only`: interpolated
 
   bool vanishes() const { return prune || keep_area; }

@@ -3,8 +3,8 @@
 #include <array>
 
 #include "lodestone/simplify/collapse_attributes_detail.h"
+#include "lodestone/simplify/collapse_candidates_detail.h"
 #include "lodestone/simplify/collapse_solve_detail.h"
-#include "lodestone/simplify/collapse_state_detail.h"
 
 namespace lodestone::simplify::detail {
 

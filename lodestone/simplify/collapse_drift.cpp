@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodestone/simplify/collapse_state_detail.h"
+#include "lodestone/simplify/collapse_sweep_detail.h"
 
 namespace lodestone::simplify::detail {
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "lodestone/base/parallel.h"
-#include "lodestone/simplify/collapse_state_detail.h"
+#include "lodestone/simplify/collapse_sweep_detail.h"
 
 namespace lodestone::simplify::detail {
 

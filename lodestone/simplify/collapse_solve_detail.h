@@ -1,7 +1,7 @@
 // Where two vertices merge best, and what it costs: one kernel for one edge or four at once, with the same bits.
 #pragma once
 
-#include "lodestone/simplify/collapse_state_detail.h"
+#include "lodestone/simplify/collapse_candidates_detail.h"
 
 namespace lodestone::simplify::detail {
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "lodestone/simplify/collapse_attributes_detail.h"
+#include "lodestone/simplify/collapse_sweep_detail.h"
 
 namespace lodestone::simplify::detail {
 
