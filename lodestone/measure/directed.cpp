@@ -12,6 +12,7 @@
 #include "lodestone/measure/directed_detail.h"
 #include "lodestone/measure/hausdorff_detail.h"
 #include "lodestone/measure/sampling_detail.h"
+#include "lodestone/spatial/closest_batch.h"
 
 namespace lodestone::measure::detail {
 
@@ -47,10 +48,17 @@ Vec3d unit_normal(const spatial::Surface& surface, std::uint32_t triangle) {
 Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const Sampler& sampler, std::size_t begin,
                      std::size_t end) {
   Sums sums;
-  std::uint32_t hint = kNone;
+  std::vector<Sample> samples;
+  std::vector<Vec3d> points;
   sampler.for_each(begin, end, [&](std::size_t, const Sample& sample) {
-    const spatial::Nearest nearest = to.closest(sample.point, hint);
-    hint = nearest.triangle;
+    samples.push_back(sample);
+    points.push_back(sample.point);
+  });
+  std::vector<spatial::Nearest> closest(points.size());
+  spatial::ClosestBatch(to).find(points, closest);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Sample& sample = samples[i];
+    const spatial::Nearest& nearest = closest[i];
     sums.distance += std::sqrt(nearest.distance_sq);
     sums.distance_sq += nearest.distance_sq;
     ++sums.samples;
@@ -61,7 +69,7 @@ Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const
       ++sums.with_normal;
     }
     sums.add({nearest.distance_sq, sample.triangle, sample.point});
-  });
+  }
   return sums;
 }
 
@@ -76,12 +84,13 @@ std::vector<std::uint32_t> triangle_of_vertices(const spatial::Surface& surface)
 
 Peak measure_vertices(const spatial::Surface& from, const spatial::Bvh& to, const std::vector<std::uint32_t>& triangle,
                       std::vector<VertexDistance>& at_vertices, std::size_t begin, std::size_t end) {
+  const std::span<const Vec3d> points = std::span(from.positions).subspan(begin, end - begin);
+  std::vector<spatial::Nearest> closest(points.size());
+  spatial::ClosestBatch(to).find(points, closest);
   Peak highest;
-  std::uint32_t hint = kNone;
   for (std::size_t v = begin; v < end; ++v) {
     if (triangle[v] == kNone) continue;
-    const spatial::Nearest nearest = to.closest(from.positions[v], hint);
-    hint = nearest.triangle;
+    const spatial::Nearest& nearest = closest[v - begin];
     at_vertices[v] = {std::sqrt(nearest.distance_sq), nearest.triangle};
     const Peak peak{nearest.distance_sq, triangle[v], from.positions[v]};
     if (is_higher(peak, highest)) highest = peak;

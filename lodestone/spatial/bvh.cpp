@@ -174,4 +174,40 @@ void Bvh::all_within(Vec3d p, double within, std::vector<Nearest>& found) const 
   });
 }
 
+bool Bvh::triangles_in(const Box3d& box, std::size_t most, std::vector<std::uint32_t>& found) const {
+  found.clear();
+  constexpr double kFar = 4;  // the tree's own boxes lie in [-1, 1]
+  Float4 low[3], high[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    // Rounding is in the margin of the tree's boxes.
+    const auto l = static_cast<float>(std::clamp((box.min[k] - center_[k]) * scale_, -kFar, kFar));
+    const auto h = static_cast<float>(std::clamp((box.max[k] - center_[k]) * scale_, -kFar, kFar));
+    low[k] = Float4{l, l, l, l};
+    high[k] = Float4{h, h, h, h};
+  }
+  struct Place {
+    std::uint32_t level, index;
+  };
+  Place stack[96];
+  std::size_t top = 0;
+  stack[top++] = {static_cast<std::uint32_t>(level_first_.size() - 1), 0};
+  while (top > 0) {
+    const Place place = stack[--top];
+    const Node& node = nodes_[level_first_[place.level - 1] + place.index];
+    auto inside = load(node.min[0]) <= high[0] && load(node.max[0]) >= low[0];
+    for (std::size_t k = 1; k < 3; ++k) inside = inside && load(node.min[k]) <= high[k] && load(node.max[k]) >= low[k];
+    for (std::uint32_t slot = 4; slot-- > 0;) {
+      if (inside[slot] == 0) continue;
+      const std::uint32_t child = place.index * 4 + slot;
+      if (place.level > 1) {
+        stack[top++] = {place.level - 1, child};
+      } else {
+        if (found.size() == most) return false;
+        found.push_back(child);
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace lodestone::spatial

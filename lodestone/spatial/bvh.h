@@ -36,6 +36,10 @@ class Bvh {
   /// All triangles not farther than `within`, appended to `found`. Their order depends on the surface alone.
   void all_within(Vec3d p, double within, std::vector<Nearest>& found) const;
 
+  /// The triangles whose boxes reach into `box`, into `found`: all that a point of it could touch. False, with `found`
+  /// incomplete, when there are more than `most`.
+  bool triangles_in(const Box3d& box, std::size_t most, std::vector<std::uint32_t>& found) const;
+
   const Surface& surface() const { return surface_; }
 
  private:

@@ -5,10 +5,10 @@
 
 namespace lodestone::spatial {
 
-/// Key of a cell of a 2^16 cube along a three-dimensional Hilbert curve, 48 bits.
+/// Key of a cell of a 2^kBits cube along a three-dimensional Hilbert curve, 3 kBits bits; at most 16.
 /// Source: Skilling, "Programming the Hilbert curve", 2004 (axes to transpose).
+template <unsigned kBits = 16>
 constexpr std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-  constexpr unsigned kBits = 16;
   std::uint32_t axes[3] = {x, y, z};
   for (std::uint32_t q = 1U << (kBits - 1); q > 1; q >>= 1) {
     const std::uint32_t p = q - 1;
