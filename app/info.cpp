@@ -8,8 +8,8 @@
 #include "app/table.h"
 #include "app/text.h"
 #include "app/verbs.h"
-#include "lodestone/base/parallel.h"
 #include "lodestone/base/units.h"
+#include "lodestone/measure/shape.h"
 
 namespace lodestone::app {
 namespace {
@@ -66,50 +66,6 @@ const char* name_of(Semantic semantic) {
   return "";
 }
 
-// Adds what one mesh has, `times` over.
-void add_topology(Topology& sum, const Topology& one, std::uint64_t times) {
-  sum.vertices += times * one.vertices;
-  sum.wedges += times * one.wedges;
-  sum.triangles += times * one.triangles;
-  sum.degenerate_triangles += times * one.degenerate_triangles;
-  sum.duplicate_faces += times * one.duplicate_faces;
-  sum.edges += times * one.edges;
-  sum.boundary_edges += times * one.boundary_edges;
-  sum.nonmanifold_edges += times * one.nonmanifold_edges;
-  sum.inconsistent_edges += times * one.inconsistent_edges;
-  sum.nonmanifold_vertices += times * one.nonmanifold_vertices;
-  sum.components += times * one.components;
-  sum.closed = sum.closed && one.closed;
-  sum.manifold = sum.manifold && one.manifold;
-}
-
-// Area and signed volume of a mesh where an instance puts it.
-void add_measures(InfoReport& report, const Mesh& mesh, const Mat4d& transform, Vec3d center, const Task& task) {
-  struct Sums {
-    double area = 0, volume = 0;
-  };
-  const auto of_block = [&](std::size_t begin, std::size_t end) {
-    Sums sums;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Triangle t = mesh.vertices_of(i);
-      const Vec3d a = transform.point(mesh.position(t[0])) - center;
-      const Vec3d b = transform.point(mesh.position(t[1])) - center;
-      const Vec3d c = transform.point(mesh.position(t[2])) - center;
-      sums.area += length(cross(b - a, c - a)) / 2;
-      sums.volume += dot(a, cross(b, c)) / 6;
-    }
-    return sums;
-  };
-  constexpr std::size_t kBlock = 16384;
-  const Sums sums =
-      parallel_reduce(mesh.triangles.size(), kBlock, task, Sums{}, of_block, [](const Sums& a, const Sums& b) {
-        return Sums{a.area + b.area, a.volume + b.volume};
-      });
-  report.area += sums.area;
-  // A mirror turns the faces, a renderer turns them back.
-  report.volume += transform.determinant3() < 0 ? -sums.volume : sums.volume;
-}
-
 void add_attributes(InfoReport& report, const Mesh& mesh) {
   for (const AttributeStream& stream : mesh.attributes) {
     AttributeReport one{stream.name, name_of(stream.semantic), name_of(stream.type), stream.components,
@@ -125,20 +81,17 @@ void add_attributes(InfoReport& report, const Mesh& mesh) {
 
 Result<void> examine(InfoReport& report, const Model& model, const Task& task) {
   const std::vector<std::uint32_t> counts = instance_counts(model);
-  report.topology.closed = report.topology.manifold = true;
   for (std::size_t i = 0; i < model.meshes.size(); ++i) {
     if (counts[i] == 0) continue;
     ++report.meshes;
-    add_topology(report.topology, topology_of(model.meshes[i], task), counts[i]);
     add_attributes(report, model.meshes[i]);
-    if (task.cancelled()) return cancelled_error("counting");
   }
-  if (report.meshes == 0) report.topology.closed = report.topology.manifold = false;
+  const Result<measure::Shape> shape = measure::shape_of(model, task);
+  if (!shape) return fail(shape.error());
+  report.topology = shape->topology;
+  report.area = shape->area;
+  report.volume = shape->volume;
   const Box3d bounds = bounds_of(model);
-  for (const Instance& instance : model.instances) {
-    add_measures(report, model.meshes[instance.mesh], instance.transform, bounds.center(), task);
-    if (task.cancelled()) return cancelled_error("measuring");
-  }
   report.instances = model.instances.size();
   report.diagonal = bounds.diagonal();
   if (!bounds.empty()) {

@@ -66,10 +66,15 @@ Json build_json(const BuildReport& report) {
 
 Json directed_json(const measure::DirectedDistance& d) {
   return {{"max", d.sampled_max},
-          {"sharpened_max", d.max},
+          {"found_max", d.max},
           {"bound", d.bound},
           {"mean", d.mean},
           {"rms", d.rms},
+          {"median", d.median},
+          {"percentile_95", d.percentile_95},
+          {"percentile_99", d.percentile_99},
+          {"histogram", d.histogram},
+          {"histogram_step", d.histogram_step},
           {"max_at", {d.max_at.x, d.max_at.y, d.max_at.z}},
           {"normal_degrees", d.normal_degrees}};
 }
@@ -163,6 +168,22 @@ Json attributes_json(const measure::Attributes& attributes) {
   return json;
 }
 
+Json shape_json(const measure::Shape& shape) {
+  const Topology& t = shape.topology;
+  Json json{{"triangles", t.triangles},
+            {"vertices", t.vertices},
+            {"components", t.components},
+            {"closed", t.closed},
+            {"manifold", t.manifold},
+            {"boundary_edges", t.boundary_edges},
+            {"nonmanifold_edges", t.nonmanifold_edges},
+            {"area", shape.area},
+            {"volume", shape.volume},
+            {"genus", nullptr}};
+  if (shape.genus) json["genus"] = *shape.genus;
+  return json;
+}
+
 std::string to_json(const MeasureReport& report) {
   const measure::Distance& d = report.distance;
   Json json;
@@ -171,8 +192,8 @@ std::string to_json(const MeasureReport& report) {
   json["mean"] = d.mean;
   json["rms"] = d.rms;
   json["relative_max"] = d.relative(d.sampled_max);
-  json["sharpened_max"] = d.max;
-  json["relative_sharpened_max"] = d.relative(d.max);
+  json["found_max"] = d.max;
+  json["relative_found_max"] = d.relative(d.max);
   json["bound"] = d.bound;
   json["relative_bound"] = d.relative(d.bound);
   json["is_bounded"] = d.is_bounded;
@@ -183,6 +204,7 @@ std::string to_json(const MeasureReport& report) {
   json["normal_degrees"] = d.normal_degrees;
   json["diagonal"] = d.diagonal;
   json["unit"] = unit_or_null(report.unit);
+  json["shape"] = {{"a", shape_json(report.shape_a)}, {"b", shape_json(report.shape_b)}};
   if (report.attributes) json["attributes"] = attributes_json(*report.attributes);
   json["seconds"] = report.seconds;
   return text_of(json);

@@ -41,24 +41,53 @@ std::string table_of(const measure::Attributes& attributes) {
   return text;
 }
 
+std::string shape_table(const MeasureReport& report) {
+  Table table;
+  table.add_column("shape", Table::Align::left);
+  for (const char* title : {"triangles", "pieces", "closed", "manifold", "genus", "open edges"})
+    table.add_column(title);
+  const std::string& unit = report.unit;
+  table.add_column(unit.empty() ? "area" : "area (" + unit + "^2)");
+  table.add_column(unit.empty() ? "volume" : "volume (" + unit + "^3)");
+  const auto row = [&](const char* name, const measure::Shape& shape) {
+    const Topology& t = shape.topology;
+    table.add_row({name, with_separators(t.triangles), with_separators(t.components), t.closed ? "yes" : "no",
+                   t.manifold ? "yes" : "no", shape.genus ? fmt::format("{}", *shape.genus) : "-",
+                   with_separators(t.boundary_edges), short_number(shape.area),
+                   t.closed ? short_number(shape.volume) : "-"});
+  };
+  row("A", report.shape_a);
+  row("B", report.shape_b);
+  const auto kept = [](double a, double b) { return a != 0 ? percent(b / a) : std::string("-"); };
+  const bool closed = report.shape_a.topology.closed && report.shape_b.topology.closed;
+  table.add_row({"B of A",
+                 kept(static_cast<double>(report.shape_a.topology.triangles),
+                      static_cast<double>(report.shape_b.topology.triangles)),
+                 "", "", "", "", "", kept(report.shape_a.area, report.shape_b.area),
+                 closed ? kept(report.shape_a.volume, report.shape_b.volume) : "-"});
+  return "\n" + table.text();
+}
+
 std::string table_of(const MeasureReport& report) {
   const measure::Distance& d = report.distance;
   Table table;
   table.add_column(report.unit.empty() ? "distance" : "distance (" + report.unit + ")", Table::Align::left);
-  for (const char* title : {"max", "sharpened max", "at most", "mean", "rms", "normals"}) table.add_column(title);
+  for (const char* title : {"max", "found", "at most", "mean", "median", "95 %", "rms", "normals"})
+    table.add_column(title);
   const auto degrees = [](double value) { return fmt::format("{:.2f} deg", value); };
   const auto row = [&](const char* name, const measure::DirectedDistance& one) {
     table.add_row({name, short_number(one.sampled_max), short_number(one.max), short_number(one.bound),
-                   short_number(one.mean), short_number(one.rms), degrees(one.normal_degrees)});
+                   short_number(one.mean), short_number(one.median), short_number(one.percentile_95),
+                   short_number(one.rms), degrees(one.normal_degrees)});
   };
   row("A to B", d.forward);
   row("B to A", d.backward);
   table.add_row({"both", short_number(d.sampled_max), short_number(d.max), short_number(d.bound), short_number(d.mean),
-                 short_number(d.rms), degrees(d.normal_degrees)});
+                 "", "", short_number(d.rms), degrees(d.normal_degrees)});
   table.add_row({"of the diagonal", percent(d.relative(d.sampled_max)), percent(d.relative(d.max)),
-                 percent(d.relative(d.bound)), percent(d.relative(d.mean)), percent(d.relative(d.rms)), ""});
+                 percent(d.relative(d.bound)), percent(d.relative(d.mean)), "", "", percent(d.relative(d.rms)), ""});
   const std::string attributes = report.attributes ? table_of(*report.attributes) : "";
-  return table.text() + attributes +
+  return table.text() + shape_table(report) + attributes +
          fmt::format("\n{} samples a direction, diagonal of A {}, {} s\n", with_separators(d.samples),
                      short_number(d.diagonal), seconds_text(report.seconds));
 }
@@ -92,6 +121,24 @@ Result<measure::Attributes> measure_attributes(Model& a, Model& b, const measure
   return measure::attribute_deviation(a, b, options, task);
 }
 
+// --bounded: until the bound is within that length, whatever it takes.
+Result<measure::Distance> measure_distance(const Model& a, const Model& b, measure::DistanceOptions options,
+                                           const std::vector<LengthArgument>& bounded, const Task& task) {
+  const Result<measure::Reference> reference = measure::Reference::create(a, task.part(0.1));
+  if (!reference) return fail(reference.error());
+  if (!bounded.empty()) {
+    const Result<std::vector<double>> length = to_model_units(bounded, a, reference->diagonal());
+    if (!length) return fail(length.error());
+    if (length->front() < 1e-9 * reference->diagonal()) {
+      return fail(ErrorCode::bad_argument, "--bounded is too small", {}, "use at least 1e-9 of the diagonal");
+    }
+    options.tolerance = 0;
+    options.least_tolerance = length->front();
+    options.queries = std::uint64_t{1} << 60;
+  }
+  return reference->distance_to(b, options, task);
+}
+
 }  // namespace
 
 Result<ExitCode> run_measure(const Arguments& arguments, Console& console) {
@@ -101,6 +148,10 @@ Result<ExitCode> run_measure(const Arguments& arguments, Console& console) {
   if (!attributes) return fail(attributes.error());
   const Result<LengthRules> lengths = length_rules(arguments);
   if (!lengths) return fail(lengths.error());
+  const auto bounded = arguments.has("--bounded") ? length_list(arguments, "--bounded", *lengths)
+                                                  : Result<std::vector<LengthArgument>>{};
+  if (!bounded) return fail(bounded.error());
+  if (bounded->size() > 1) return fail(ErrorCode::bad_argument, "--bounded takes one value here");
 
   Stopwatch watch;
   MeasureReport report;
@@ -114,9 +165,15 @@ Result<ExitCode> run_measure(const Arguments& arguments, Console& console) {
   report.unit = unit_name(a->meters_per_unit);
   const double share = *attributes ? 0.3 : 0.7;
   const Result<measure::Distance> distance =
-      measure::distance(*a, *b, *options, console.task().part(share, "measuring"));
+      measure_distance(*a, *b, *options, *bounded, console.task().part(share, "measuring"));
   if (!distance) return fail(distance.error());
   report.distance = *distance;
+  const Task counting = console.task().part(0.05, "counting");
+  const Result<measure::Shape> shape_a = measure::shape_of(*a, counting);
+  const Result<measure::Shape> shape_b = shape_a ? measure::shape_of(*b, counting) : shape_a;
+  if (!shape_b) return fail(shape_b.error());
+  report.shape_a = *shape_a;
+  report.shape_b = *shape_b;
   if (*attributes) {
     const Result<measure::Attributes> found =
         measure_attributes(*a, *b, **attributes, console, console.task().part(0.4, "measuring attributes"));

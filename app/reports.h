@@ -12,6 +12,7 @@
 #include "lodestone/core/topology.h"
 #include "lodestone/measure/attributes.h"
 #include "lodestone/measure/distance.h"
+#include "lodestone/measure/shape.h"
 
 namespace lodestone::app {
 
@@ -55,6 +56,7 @@ struct SimplifyReport {
 struct MeasureReport {
   std::string a, b, unit;
   measure::Distance distance;
+  measure::Shape shape_a, shape_b;
   std::optional<measure::Attributes> attributes;  ///< with --attributes
   double seconds = 0;
 };

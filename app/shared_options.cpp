@@ -124,6 +124,18 @@ OptionGroup measuring_group(std::uint64_t samples) {
             Completion::none}}};
 }
 
+OptionGroup with_bounded(OptionGroup group) {
+  group.options.push_back({"--bounded",
+                           "",
+                           "T",
+                           "",
+                           "share or length",
+                           "go on until the maximum is certain to within T, however long it takes",
+                           {},
+                           Completion::none});
+  return group;
+}
+
 OptionGroup attribute_group() {
   return {
       "Attributes",

@@ -19,11 +19,13 @@ OptionGroup view_group();           ///< --height, --fov
 OptionGroup single_target_group();  ///< --ratio, --triangles, --error (simplify)
 OptionGroup length_group();         ///< --unit, --absolute
 OptionGroup unit_group();           ///< --unit
-OptionGroup measuring_group(std::uint64_t samples);  ///< --samples, --seed
-OptionGroup attribute_group();                       ///< --attributes, --uv-set
-OptionGroup output_group(bool compress);             ///< -o, --compress, --json
-OptionGroup result_group();                          ///< --json alone
-OptionGroup general_group();                         ///< --threads, --quiet, --verbose, --help
+OptionGroup measuring_group(std::uint64_t samples);
+/// With --bounded.
+OptionGroup with_bounded(OptionGroup group);  ///< --samples, --seed
+OptionGroup attribute_group();                ///< --attributes, --uv-set
+OptionGroup output_group(bool compress);      ///< -o, --compress, --json
+OptionGroup result_group();                   ///< --json alone
+OptionGroup general_group();                  ///< --threads, --quiet, --verbose, --help
 
 /// More levels than these are no ladder but a slip of the keyboard.
 inline constexpr std::uint64_t kMostLevels = 32;

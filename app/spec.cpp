@@ -51,11 +51,17 @@ VerbSpec measure_spec() {
       "measure",
       "Measures the distance between two surfaces, both ways; A is the original.",
       {"A B", 2, 2, {}, Completion::file},
-      {measuring_group(kMeasureSamples), attribute_group(), unit_group(), result_group(), general_group()},
+      {with_bounded(measuring_group(kMeasureSamples)), attribute_group(), unit_group(), result_group(),
+       general_group()},
       {{"lod measure statue.ply small.ply", "how far apart they are"},
        {"lod measure statue.ply small.ply --samples 200000 --json", "fewer samples, figures as JSON"},
+       {"lod measure statue.ply small.ply --bounded 0.01%",
+        "the largest distance for certain, to within a ten-thousandth of the diagonal"},
        {"lod measure tower.glb tower.ply --attributes", "scenes as drawn; normals, UVs and colours as well"}},
-      "Maxima are over the samples and all vertices, means over area-weighted samples. Relative figures are divided by "
+      "Means, medians and the largest sample are over area-weighted samples, the last over all vertices, too; the "
+      "other two maxima "
+      "are the largest distance that was found by looking further, and a certified bound that none exceeds. Relative "
+      "figures are divided by "
       "the diagonal of A's bounding box. --attributes compares at corresponding points: the angle between normals, the "
       "distance between UVs, between vertex colours (RGB from 0 to 1), and between the colours that a viewer shows "
       "(base colour, texture and vertex colour).",

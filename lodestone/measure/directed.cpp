@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/measure/directed_detail.h"
-#include "lodestone/measure/hausdorff_detail.h"
+#include "lodestone/measure/maximum_bound_detail.h"
 #include "lodestone/measure/sampling_detail.h"
 #include "lodestone/spatial/closest_batch.h"
 
@@ -19,6 +21,7 @@ namespace lodestone::measure::detail {
 namespace {
 
 constexpr std::size_t kChunk = 4096;
+constexpr std::size_t kBins = 64;  // of the histogram
 
 struct Sums {
   double distance = 0, distance_sq = 0, degrees = 0;
@@ -45,8 +48,8 @@ Vec3d unit_normal(const spatial::Surface& surface, std::uint32_t triangle) {
   return normalized(scaled_normal(a, b, c));
 }
 
-Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const Sampler& sampler, std::size_t begin,
-                     std::size_t end) {
+Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const Sampler& sampler,
+                     std::span<float> distances, std::size_t begin, std::size_t end) {
   Sums sums;
   std::vector<Sample> samples;
   std::vector<Vec3d> points;
@@ -59,7 +62,9 @@ Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Sample& sample = samples[i];
     const spatial::Nearest& nearest = closest[i];
-    sums.distance += std::sqrt(nearest.distance_sq);
+    const double distance = std::sqrt(nearest.distance_sq);
+    distances[begin + i] = static_cast<float>(distance);
+    sums.distance += distance;
     sums.distance_sq += nearest.distance_sq;
     ++sums.samples;
     const Vec3d n = unit_normal(from, sample.triangle), m = unit_normal(to.surface(), nearest.triangle);
@@ -73,29 +78,23 @@ Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const
   return sums;
 }
 
-// Vertices in the surface's order, each with a triangle that has it.
-std::vector<std::uint32_t> triangle_of_vertices(const spatial::Surface& surface) {
-  std::vector<std::uint32_t> triangle(surface.positions.size(), kNone);
-  for (std::size_t t = surface.triangles.size(); t-- > 0;) {
-    for (const std::uint32_t v : surface.triangles[t]) triangle[v] = static_cast<std::uint32_t>(t);
+// Percentiles and histogram. Changes the order of the distances.
+void spread(std::vector<float>& distances, DirectedDistance& out) {
+  const auto percentile = [&](double share) {
+    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(distances.size() - 1));
+    std::nth_element(distances.begin(), distances.begin() + rank, distances.end());
+    return static_cast<double>(distances[static_cast<std::size_t>(rank)]);
+  };
+  out.median = percentile(0.5);
+  out.percentile_95 = percentile(0.95);
+  out.percentile_99 = percentile(0.99);
+  const auto largest = static_cast<double>(*std::max_element(distances.begin(), distances.end()));
+  out.histogram.assign(kBins, 0);
+  out.histogram_step = largest / static_cast<double>(kBins);
+  for (const float d : distances) {
+    const double bin = largest > 0 ? static_cast<double>(d) / largest * static_cast<double>(kBins) : 0;
+    ++out.histogram[std::min(kBins - 1, static_cast<std::size_t>(bin))];
   }
-  return triangle;
-}
-
-Peak measure_vertices(const spatial::Surface& from, const spatial::Bvh& to, const std::vector<std::uint32_t>& triangle,
-                      std::vector<VertexDistance>& at_vertices, std::size_t begin, std::size_t end) {
-  const std::span<const Vec3d> points = std::span(from.positions).subspan(begin, end - begin);
-  std::vector<spatial::Nearest> closest(points.size());
-  spatial::ClosestBatch(to).find(points, closest);
-  Peak highest;
-  for (std::size_t v = begin; v < end; ++v) {
-    if (triangle[v] == kNone) continue;
-    const spatial::Nearest& nearest = closest[v - begin];
-    at_vertices[v] = {std::sqrt(nearest.distance_sq), nearest.triangle};
-    const Peak peak{nearest.distance_sq, triangle[v], from.positions[v]};
-    if (is_higher(peak, highest)) highest = peak;
-  }
-  return highest;
 }
 
 }  // namespace
@@ -105,29 +104,26 @@ DirectedDistance directed_distance(const spatial::Surface& from, const spatial::
   const Sampler sampler(from, options.samples, options.seed);
   const std::uint64_t samples = sampler.count();
   const Task sampling = task.part(0.7);
+  std::vector<float> distances(samples);
   Sums sums = parallel_reduce(
       samples, kChunk, sampling, Sums{},
       [&](std::size_t begin, std::size_t end) {
-        Sums part = measure_samples(from, to, sampler, begin, end);
+        Sums part = measure_samples(from, to, sampler, distances, begin, end);
         sampling.advance(static_cast<double>(end - begin) / static_cast<double>(samples));
         return part;
       },
       join);
-  const std::vector<std::uint32_t> triangle = triangle_of_vertices(from);
-  std::vector<VertexDistance> at_vertices(from.positions.size());
-  sums.add(parallel_reduce(
-      from.positions.size(), kChunk, task, Peak{},
-      [&](std::size_t begin, std::size_t end) { return measure_vertices(from, to, triangle, at_vertices, begin, end); },
-      [](const Peak& a, const Peak& b) { return is_higher(b, a) ? b : a; }));
+  const VertexDistances vertices = vertex_distances(from, to, task);
+  sums.add(vertices.peak);
   DirectedDistance out;
   if (task.cancelled() || sums.peak.triangle == kNone) return out;
   out.sampled_max = std::sqrt(sums.peak.distance_sq);
   MaximumBound bound{sums.peak, std::numeric_limits<double>::infinity()};
   if (options.bound) {
     const double diagonal = std::max(from.bounds.diagonal(), to.surface().bounds.diagonal());
-    const BoundOptions search{options.tolerance, kBoundFloor * diagonal,
+    const BoundOptions search{options.tolerance, least_tolerance(diagonal, options),
                               options.queries > 0 ? options.queries : samples};
-    bound = bound_maximum(from, to, spatial::triangle_neighbors(to.surface()), at_vertices, sums.peak, search,
+    bound = bound_maximum(from, to, spatial::triangle_neighbors(to.surface()), vertices.of, sums.peak, search,
                           task.part(0.3));
   }
   if (task.cancelled()) return out;
@@ -138,6 +134,7 @@ DirectedDistance directed_distance(const spatial::Surface& from, const spatial::
     const auto n = static_cast<double>(sums.samples);
     out.mean = sums.distance / n;
     out.rms = std::sqrt(sums.distance_sq / n);
+    spread(distances, out);
   }
   if (sums.with_normal > 0) out.normal_degrees = sums.degrees / static_cast<double>(sums.with_normal);
   return out;

@@ -10,11 +10,14 @@
 
 namespace lodestone::measure::detail {
 
-constexpr double kBoundFloor = 1e-6;  // of the larger diagonal: what a bound may lie above a maximum near zero
+/// How far a bound may lie above any maximum.
+inline double least_tolerance(double diagonal, const DistanceOptions& options) {
+  return options.least_tolerance > 0 ? options.least_tolerance : 1e-6 * diagonal;
+}
 
 /// How high the bound of a maximum may be.
 inline double bound_goal(double max, double diagonal, const DistanceOptions& options) {
-  return std::max(max * (1 + options.tolerance), max + kBoundFloor * diagonal);
+  return std::max(max * (1 + options.tolerance), max + least_tolerance(diagonal, options));
 }
 
 /// `from` has its own order; `to` answers. Same figures for any thread count.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
@@ -15,7 +16,8 @@ struct DistanceOptions {
   std::uint64_t seed = 1;
   /// Bound the maximum from above, by subdividing where the distance could be larger than what was found.
   bool bound = true;
-  double tolerance = 0.01;  ///< of the maximum: how far the bound may lie above it
+  double tolerance = 0.01;     ///< of the maximum: how far the bound may lie above it,
+  double least_tolerance = 0;  ///< or this far, model units; 0: 1e-6 of the larger diagonal
   /// Closest points that bounding may look up a direction; 0: one a sample.
   std::uint64_t queries = 0;
 };
@@ -26,7 +28,12 @@ struct DirectedDistance {
   double sampled_max = 0;             ///< largest of the samples and vertices alone, as other tools tell it
   double bound = 0;                   ///< certified: the true maximum is not larger; infinite when not asked for
   Vec3d max_at;                       ///< where on the first surface max was found
-  double normal_degrees = 0;          ///< mean angle between the faces' normals, 0 to 180
+  double median = 0, percentile_95 = 0, percentile_99 = 0;  ///< of the samples
+  /// Samples by distance, in equal steps from 0 to the largest sample's; that one is in the last. Empty without
+  /// samples.
+  std::vector<std::uint64_t> histogram;
+  double histogram_step = 0;  ///< model units
+  double normal_degrees = 0;  ///< mean angle between the faces' normals, 0 to 180
 };
 
 struct Distance {

@@ -74,7 +74,7 @@ TEST(Distance, bounds_hold_for_any_triangles) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     const Mesh a = test::soup(seed, 9, static_cast<int>(1 + seed % 7)),
                b = test::soup(seed + 1000, 9, static_cast<int>(1 + seed % 5));
-    const auto d = distance(make_model(a), make_model(b), {50, seed, true, 0.01, 100'000});
+    const auto d = distance(make_model(a), make_model(b), {50, seed, true, 0.01, 0, 100'000});
     const auto dense = distance(make_model(a), make_model(b), {100'000, seed, false});
     ASSERT_TRUE(d && dense);
     EXPECT_TRUE(d->is_bounded) << seed;
@@ -88,7 +88,7 @@ TEST(Distance, bounds_hold_for_any_triangles) {
 // Simplified meshes: triangles of one span edges and corners of the other, where bounds are hardest to get.
 TEST(Distance, bounds_hold_for_a_coarser_mesh) {
   for (const int n : {3, 5, 8, 13}) {
-    const auto d = distance(make_model(test::torus(40)), make_model(test::torus(n)), {1000, 1, true, 0.01, 1'000'000});
+    const auto d = distance(make_model(test::torus(40)), make_model(test::torus(n)), {1000, 1, true, 0.01, 0, 1'000'000});
     const auto dense = distance(make_model(test::torus(40)), make_model(test::torus(n)), {200'000, 1, false});
     ASSERT_TRUE(d && dense);
     EXPECT_TRUE(d->is_bounded) << n;
@@ -99,11 +99,31 @@ TEST(Distance, bounds_hold_for_a_coarser_mesh) {
 
 // Too few queries: the bound is far above, still true, and not called reached.
 TEST(Distance, a_bound_that_was_given_up_still_holds) {
-  const auto d = distance(make_model(test::torus(60)), make_model(test::torus(50)), {1000, 1, true, 0.001, 10});
+  const auto d = distance(make_model(test::torus(60)), make_model(test::torus(50)), {1000, 1, true, 0.001, 0, 10});
   const auto dense = distance(make_model(test::torus(60)), make_model(test::torus(50)), {1'000'000, 1, false});
   EXPECT_FALSE(d->is_bounded);
   EXPECT_GE(d->bound, dense->max);
   EXPECT_EQ(d->trusted_max(), d->max);
+}
+
+// A square beside one that rises from 0 to 1: the distances are spread evenly.
+TEST(Distance, percentiles_and_histogram) {
+  Mesh slope = test::grid(1);
+  for (Vec3f& p : slope.positions) p = {p.x * 1e-3F, p.y, p.y};
+  Mesh wall = test::grid(1);
+  for (Vec3f& p : wall.positions) p = {p.x * 1e-3F, p.y, 0};
+  const DirectedDistance d = measured(wall, slope).forward;
+  // From the wall at height y to a plane at 45 degrees: y / sqrt(2).
+  EXPECT_NEAR(d.median, 0.5 / std::sqrt(2.0), 2e-3);
+  EXPECT_NEAR(d.percentile_95, 0.95 / std::sqrt(2.0), 2e-3);
+  EXPECT_NEAR(d.percentile_99, 0.99 / std::sqrt(2.0), 2e-3);
+  std::uint64_t all = 0;
+  for (const std::uint64_t n : d.histogram) {
+    EXPECT_NEAR(static_cast<double>(n), 50'000.0 / 64, 100);
+    all += n;
+  }
+  EXPECT_EQ(all, 50'000U);
+  EXPECT_NEAR(d.histogram_step * 64, d.sampled_max, 1e-3);
 }
 
 TEST(Distance, same_figures_for_any_thread_count) {

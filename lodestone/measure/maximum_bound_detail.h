@@ -16,6 +16,7 @@ struct VertexDistance {
   std::uint32_t triangle = kNone;  ///< of the other surface; kNone for a vertex that no triangle uses
 };
 
+/// The largest distance that was found, and where.
 struct Peak {
   double distance_sq = -1;
   std::uint32_t triangle = kNone;  ///< of the first surface
@@ -23,6 +24,14 @@ struct Peak {
 };
 
 bool is_higher(const Peak& a, const Peak& b);
+
+struct VertexDistances {
+  std::vector<VertexDistance> of;  ///< one a position of the first surface
+  Peak peak;
+};
+
+/// All vertices of `from` that a triangle uses. O(vertices log triangles).
+VertexDistances vertex_distances(const spatial::Surface& from, const spatial::Bvh& to, const Task& task);
 
 struct BoundOptions {
   double tolerance = 0.01;    ///< the search ends when the bound is at most this share above the maximum,
