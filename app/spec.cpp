@@ -54,7 +54,6 @@ VerbSpec measure_spec() {
       {with_bounded(measuring_group(kMeasureSamples)), attribute_group(), unit_group(), result_group(),
        general_group()},
       {{"lod measure statue.ply small.ply", "how far apart they are"},
-       {"lod measure statue.ply small.ply --samples 200000 --json", "fewer samples, figures as JSON"},
        {"lod measure statue.ply small.ply --bounded 0.01%",
         "the largest distance for certain, to within a ten-thousandth of the diagonal"},
        {"lod measure tower.glb tower.ply --attributes", "scenes as drawn; normals, UVs and colours as well"}},

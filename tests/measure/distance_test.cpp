@@ -88,7 +88,8 @@ TEST(Distance, bounds_hold_for_any_triangles) {
 // Simplified meshes: triangles of one span edges and corners of the other, where bounds are hardest to get.
 TEST(Distance, bounds_hold_for_a_coarser_mesh) {
   for (const int n : {3, 5, 8, 13}) {
-    const auto d = distance(make_model(test::torus(40)), make_model(test::torus(n)), {1000, 1, true, 0.01, 0, 1'000'000});
+    const auto d =
+        distance(make_model(test::torus(40)), make_model(test::torus(n)), {1000, 1, true, 0.01, 0, 1'000'000});
     const auto dense = distance(make_model(test::torus(40)), make_model(test::torus(n)), {200'000, 1, false});
     ASSERT_TRUE(d && dense);
     EXPECT_TRUE(d->is_bounded) << n;
