@@ -59,6 +59,8 @@ Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const
   });
   std::vector<spatial::Nearest> closest(points.size());
   spatial::ClosestBatch(to).find(points, closest);
+  std::uint32_t triangle = kNone;
+  Vec3d n;  // of that triangle: several samples in a row have the same
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Sample& sample = samples[i];
     const spatial::Nearest& nearest = closest[i];
@@ -67,7 +69,11 @@ Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const
     sums.distance += distance;
     sums.distance_sq += nearest.distance_sq;
     ++sums.samples;
-    const Vec3d n = unit_normal(from, sample.triangle), m = unit_normal(to.surface(), nearest.triangle);
+    if (sample.triangle != triangle) {
+      triangle = sample.triangle;
+      n = unit_normal(from, triangle);
+    }
+    const Vec3d m = unit_normal(to.surface(), nearest.triangle);
     if (n != Vec3d{} && m != Vec3d{}) {
       // acos is not the same on every machine; this angle is for reading only, nothing is decided by it.
       sums.degrees += std::acos(std::clamp(dot(n, m), -1.0, 1.0)) * 180 / std::numbers::pi;

@@ -13,10 +13,8 @@ namespace {
 
 using Float4 = float __attribute__((vector_size(16)));
 
-// After a group that was too wide the next ones likely are, too.
-constexpr std::size_t kAlone = 7;
-
-constexpr double kFarther = 1.25;
+// How much farther to look than the group before had to.
+constexpr double kFarther = 1.6;
 
 // Of the largest coordinate of a triangle or point, as seen from the group's middle: what single precision may be off
 // by.
@@ -152,16 +150,16 @@ bool ClosestBatch::find_group(std::span<const Vec3d> points, Group group, std::s
 // Distances of the group's points to the triangles of near_, as intervals: to lowest_ and highest_. Returns the largest
 // of highest_.
 float ClosestBatch::test_near(const float (&coordinates)[3][kGroup], Vec3d middle, float reach) {
-  Vec4 p[2];
-  Float4 highest[2];
-  for (std::size_t h = 0; h < 2; ++h) {
+  Vec4 p[kGroup / 4];
+  Float4 highest[kGroup / 4];
+  for (std::size_t h = 0; h < kGroup / 4; ++h) {
     const auto four = [&](const float* v) { return Float4{v[4 * h], v[4 * h + 1], v[4 * h + 2], v[4 * h + 3]}; };
     p[h] = {four(coordinates[0]), four(coordinates[1]), four(coordinates[2])};
     highest[h] = all(3e38F);
   }
   for (std::size_t n = 0; n < near_.size(); ++n) {
     const Ready t = ready(tree_.surface().corners(near_[n]), middle, reach);
-    for (std::size_t h = 0; h < 2; ++h) {
+    for (std::size_t h = 0; h < kGroup / 4; ++h) {
       const Float4 d = root(distance_sq(t, p[h]));
       highest[h] = smaller(highest[h], d + all(t.rounding));
       const Float4 low = t.sliver ? all(0) : d - all(t.rounding);
@@ -180,16 +178,14 @@ void ClosestBatch::find(std::span<const Vec3d> points, std::span<Nearest> closes
   sort(points);
   for (std::size_t i = 0; i < points.size(); i += kGroup) {
     const Group group = Group(order_).subspan(i, std::min(kGroup, points.size() - i));
-    if (group.size() == kGroup && alone_ == 0) {
+    if (group.size() == kGroup) {
       if (find_group(points, group, closest)) continue;
-      alone_ = kAlone;
       within_ = -1;
     }
     for (const std::uint32_t k : group) {
       closest[k] = tree_.closest(points[k], hint_);
       hint_ = closest[k].triangle;
     }
-    alone_ -= alone_ > 0 ? 1 : 0;
   }
 }
 

@@ -23,7 +23,7 @@ class ClosestBatch {
 
  private:
   static constexpr std::size_t kGroup = 8;
-  static constexpr std::size_t kMostTriangles = 64;
+  static constexpr std::size_t kMostTriangles = 96;
   using Group = std::span<const std::uint32_t>;  // numbers of points
   void sort(std::span<const Vec3d> points);
   bool find_group(std::span<const Vec3d> points, Group group, std::span<Nearest> closest);
@@ -32,8 +32,7 @@ class ClosestBatch {
 
   const Bvh& tree_;
   std::uint32_t hint_ = kNone;
-  double within_ = -1;     // how far to look, from the group before; negative: not known
-  std::size_t alone_ = 0;  // groups to come that are asked for one by one
+  double within_ = -1;  // how far to look, from the group before; negative: not known
   std::vector<std::uint64_t> keys_;
   std::vector<std::uint32_t> order_;
   std::vector<std::uint32_t> near_;
