@@ -63,6 +63,10 @@ Result<void> check_output(const fs::path& output, const std::vector<fs::path>& i
                 output.string(), "end it in .glb, .gltf, .ply, .obj, .stl or .off");
   }
   if (const Result<void> name = io::check_model_name(output, compression); !name) return name;
+  return check_place(output, inputs);
+}
+
+Result<void> check_place(const fs::path& output, const std::vector<fs::path>& inputs) {
   for (const fs::path& input : inputs) {
     if (would_overwrite(output, input)) {
       return fail(ErrorCode::bad_argument, "is an input, and inputs are never overwritten", output.string(),

@@ -26,6 +26,9 @@ Result<Model> read_input(const std::filesystem::path& path, const Console& conso
 Result<void> check_output(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs,
                           io::Compression compression);
 
+/// The part of check_output() that holds for files of any kind: the folder, and that no input is replaced.
+Result<void> check_place(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs);
+
 /// What the error says when -o is missing.
 tl::unexpected<Error> missing_output(const std::string& verb, const std::string& input);
 

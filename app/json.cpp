@@ -250,6 +250,25 @@ std::string to_json(const InfoReport& report) {
   return text_of(json);
 }
 
+std::string to_json(const RenderReport& report) {
+  Json json;
+  json["input"] = {{"path", report.input}, {"triangles", report.triangles}};
+  json["level"] = report.level;
+  json["file"] = report.file;
+  json["bytes"] = report.bytes;
+  json["width"] = report.width;
+  json["height"] = report.height;
+  json["shading"] = report.shading;
+  json["camera"] = {{"eye", report.eye}, {"forward", report.forward}, {"up", report.up}};
+  json["heat_range"] = report.heat_range ? Json(*report.heat_range) : Json(nullptr);
+  json["seconds"] = {{"read", report.read_seconds},
+                     {"prepare", report.prepare_seconds},
+                     {"draw", report.draw_seconds},
+                     {"write", report.write_seconds}};
+  json["warnings"] = report.warnings;
+  return text_of(json);
+}
+
 std::string to_json(const ConvertReport& report) {
   Json json;
   json["input"] = {{"path", report.input}, {"triangles", report.triangles}};

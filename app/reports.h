@@ -89,6 +89,17 @@ struct ConvertReport {
   std::vector<std::string> warnings;
 };
 
+struct RenderReport {
+  std::string input, file, shading;
+  std::size_t level = 0, triangles = 0;
+  std::uint32_t width = 0, height = 0;
+  std::array<double, 3> eye{}, forward{}, up{};
+  std::optional<std::array<double, 2>> heat_range;
+  std::uint64_t bytes = 0;
+  double read_seconds = 0, prepare_seconds = 0, draw_seconds = 0, write_seconds = 0;
+  std::vector<std::string> warnings;
+};
+
 struct SampleReport {
   std::string sample, file;
   std::size_t triangles = 0, vertices = 0, instances = 0;

@@ -4,6 +4,7 @@
 
 #include "app/attributes.h"
 #include "app/influence.h"
+#include "app/render_options.h"
 #include "app/shared_options.h"
 #include "app/verbs.h"
 
@@ -65,6 +66,20 @@ VerbSpec measure_spec() {
       "distance between UVs, between vertex colours (RGB from 0 to 1), and between the colours that a viewer shows "
       "(base colour, texture and vertex colour).",
       run_measure};
+}
+
+VerbSpec render_spec() {
+  return {"render",
+          "Draws a picture of a model, without a display: shaded, textured, as wires, or with numbers as colours.",
+          one_model(),
+          {camera_group(), look_group(), picture_group(), general_group()},
+          {{"lod render statue.ply -o statue.png", "from the front and a little above, in grey"},
+           {"lod render statue.glb --level 1 --wireframe --view iso -o level1.png", "a ladder's level with its edges"},
+           {"lod render tower.glb --angles 30,20 --size 800x600 -o tower.webp", "from 30 degrees right, 20 above"}},
+          "Views are named by where the eye is, for someone who stands before the model: front is +z with y up, right "
+          "is +x. Faces seen from behind are drawn in a dull blue unless their material is double-sided. A numbers' "
+          "attribute (--shading heat --attribute NAME) is drawn with a legend.",
+          run_render};
 }
 
 VerbSpec info_spec() {
@@ -142,7 +157,7 @@ VerbSpec completion_spec() {
 }
 
 std::vector<VerbSpec> make_verbs() {
-  std::vector<VerbSpec> all{build_spec(),   simplify_spec(), measure_spec(), info_spec(),
+  std::vector<VerbSpec> all{build_spec(),   simplify_spec(), measure_spec(), render_spec(),    info_spec(),
                             convert_spec(), sample_spec(),   help_spec(),    completion_spec()};
   std::vector<std::string> names;
   for (const VerbSpec& verb : all) names.push_back(verb.name);

@@ -12,6 +12,7 @@ Result<ExitCode> run_build(const Arguments& arguments, Console& console);
 Result<ExitCode> run_simplify(const Arguments& arguments, Console& console);
 Result<ExitCode> run_measure(const Arguments& arguments, Console& console);
 Result<ExitCode> run_info(const Arguments& arguments, Console& console);
+Result<ExitCode> run_render(const Arguments& arguments, Console& console);
 Result<ExitCode> run_convert(const Arguments& arguments, Console& console);
 Result<ExitCode> run_sample(const Arguments& arguments, Console& console);
 Result<ExitCode> run_help(const Arguments& arguments, Console& console);

@@ -176,8 +176,8 @@ struct DracoCache;  // decoded buffer views, so that shared ones are decoded onc
 Result<Mesh> read_mesh(const Document::Data& data, std::size_t index, Budget& budget, DracoCache& cache, Model& model,
                        const Task& task);
 
-/// Fills instances and data.instance_nodes.
-Result<void> read_scene(Document::Data& data, Model& model, Budget& budget);
+/// Fills instances and data.instance_nodes. `draw_level`: as in ReadOptions.
+Result<void> read_scene(Document::Data& data, Model& model, Budget& budget, std::size_t draw_level);
 
 std::vector<Material> read_materials(const Document::Data& data);
 

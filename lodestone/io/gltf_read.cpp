@@ -74,7 +74,7 @@ Result<Model> read_document(std::string bytes, std::string name, const std::file
   warn_of_required(data, model.warnings);
   Budget budget = unfold_budget(data.file_bytes);
   if (const Result<void> ok = read_meshes(data, model, budget, task.part(0.7)); !ok) return fail(ok.error());
-  if (const Result<void> ok = read_scene(data, model, budget); !ok) return fail(ok.error());
+  if (const Result<void> ok = read_scene(data, model, budget, options.draw_level); !ok) return fail(ok.error());
   if (model.instances.empty()) {
     return fail(ErrorCode::empty, "has no triangles: the scene draws no mesh", data.name, "is it the right file?");
   }

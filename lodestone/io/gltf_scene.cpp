@@ -1,6 +1,7 @@
 // The scene: nodes that draw a mesh become instances, with their transforms multiplied out in double.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -71,10 +72,11 @@ Result<std::vector<Mat4d>> instancing(const Document::Data& data, const Json& no
 // Depth first without recursion; a node met twice makes the graph no tree.
 class SceneWalk {
  public:
-  SceneWalk(Document::Data& data, Model& model, Budget& budget)
+  SceneWalk(Document::Data& data, Model& model, Budget& budget, std::size_t draw_level)
       : data_(data),
         model_(model),
         budget_(budget),
+        draw_level_(draw_level),
         nodes_(array_member(data.json, "nodes")),
         seen_(nodes_.size(), false) {}
 
@@ -105,8 +107,9 @@ class SceneWalk {
     const Result<Mat4d> local = local_transform(node, where);
     if (!local) return fail(local.error());
     const Mat4d world = parent * *local;
-    if (member(node, "mesh") != nullptr) {
-      const Result<std::size_t> mesh = index_member(node, "mesh", model_.meshes.size(), "meshes", where);
+    const Json& drawn = level_of(node);
+    if (member(drawn, "mesh") != nullptr) {
+      const Result<std::size_t> mesh = index_member(drawn, "mesh", model_.meshes.size(), "meshes", where);
       if (!mesh) return fail(mesh.error());
       const Result<std::vector<Mat4d>> placings = instancing(data_, node, where, budget_);
       if (!placings) return fail(placings.error());
@@ -134,9 +137,21 @@ class SceneWalk {
     return {};
   }
 
+  // The node that stands for this one at the level to be drawn; it is placed as this one (the writer copies it).
+  const Json& level_of(const Json& node) const {
+    const Json* extensions = draw_level_ > 0 ? member(node, "extensions") : nullptr;
+    const Json* lod = extensions != nullptr ? member(*extensions, kMsftLod) : nullptr;
+    if (lod == nullptr) return node;
+    const Json& ids = array_member(*lod, "ids");
+    if (ids.empty()) return node;
+    const auto id = as_uint(ids[std::min(draw_level_, ids.size()) - 1]);
+    return id && *id < nodes_.size() ? nodes_[static_cast<std::size_t>(*id)] : node;
+  }
+
   Document::Data& data_;
   Model& model_;
   Budget& budget_;
+  std::size_t draw_level_;
   const Json& nodes_;
   std::vector<bool> seen_;
   std::vector<Visit> stack_;
@@ -182,10 +197,10 @@ Result<std::vector<std::size_t>> find_roots(const Document::Data& data) {
 
 }  // namespace
 
-Result<void> read_scene(Document::Data& data, Model& model, Budget& budget) {
+Result<void> read_scene(Document::Data& data, Model& model, Budget& budget, std::size_t draw_level) {
   const Result<std::vector<std::size_t>> roots = find_roots(data);
   if (!roots) return fail(roots.error());
-  return SceneWalk(data, model, budget).walk(*roots);
+  return SceneWalk(data, model, budget, draw_level).walk(*roots);
 }
 
 }  // namespace lodestone::io

@@ -1,5 +1,7 @@
 // WebP through libwebp.
+#include <fmt/format.h>
 #include <webp/decode.h>
+#include <webp/encode.h>
 
 #include "lodestone/io/image_codecs_detail.h"
 
@@ -22,6 +24,28 @@ Result<Pixels> decode_webp(std::span<const std::byte> encoded, const std::string
     return broken();
   }
   return pixels;
+}
+
+Result<std::string> encode_webp(const Pixels& pixels, const std::string& name) {
+  if (pixels.width > WEBP_MAX_DIMENSION || pixels.height > WEBP_MAX_DIMENSION) {
+    return fail(ErrorCode::unsupported,
+                fmt::format("WebP holds at most {0} x {0} pixels, the picture has {1} x {2}", WEBP_MAX_DIMENSION,
+                            pixels.width, pixels.height),
+                name, "write a PNG");
+  }
+  const int width = static_cast<int>(pixels.width), height = static_cast<int>(pixels.height);
+  std::uint8_t* bytes = nullptr;
+  std::size_t size = 0;
+  if (has_alpha(pixels)) {
+    size = WebPEncodeLosslessRGBA(pixels.rgba.data(), width, height, width * 4, &bytes);
+  } else {
+    const std::vector<std::uint8_t> rgb = without_alpha(pixels);
+    size = WebPEncodeLosslessRGB(rgb.data(), width, height, width * 3, &bytes);
+  }
+  if (size == 0) return fail(ErrorCode::out_of_memory, "the WebP can't be encoded", name, "write a PNG");
+  std::string encoded(reinterpret_cast<const char*>(bytes), size);
+  WebPFree(bytes);
+  return encoded;
 }
 
 }  // namespace lodestone::io

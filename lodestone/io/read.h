@@ -1,6 +1,7 @@
 // Reading models: one door for every format.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -16,6 +17,9 @@ struct ReadOptions {
   /// Whether levels that a glTF file has of its own (MSFT_lod) are kept in its document. Without them what is written
   /// anew has no levels of the old geometry.
   bool levels = true;
+  /// Which level of a glTF file's ladder (MSFT_lod) the instances draw: 0 = the original. A node with fewer levels
+  /// draws its coarsest. For looking at it: a model so read is not for writing.
+  std::size_t draw_level = 0;
 };
 
 /// Reads a model by its extension (any case), checked against the content: PLY, OBJ, STL, OFF, glTF, GLB, DRC and,

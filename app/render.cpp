@@ -1,0 +1,167 @@
+#include "lodestone/render/render.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "app/input.h"
+#include "app/json.h"
+#include "app/render_options.h"
+#include "app/text.h"
+#include "app/verbs.h"
+#include "lodestone/base/stopwatch.h"
+#include "lodestone/base/units.h"
+#include "lodestone/io/image_decode.h"
+#include "lodestone/io/image_encode.h"
+
+namespace lodestone::app {
+namespace {
+
+// What is asked for, checked before anything is read.
+struct Request {
+  std::string input, output, attribute;
+  std::optional<render::Shading> shading;
+  CameraChoice camera;
+  render::RenderOptions options;
+  std::size_t level = 0;
+};
+
+Result<std::string> output_of(const Arguments& arguments) {
+  const std::string& input = arguments.inputs.front();
+  if (!arguments.has("--output")) {
+    return fail(ErrorCode::bad_argument, "render needs an output", {},
+                fmt::format("add one, such as -o {}.png", std::filesystem::path(input).stem().string()));
+  }
+  const std::string output = arguments.text("--output");
+  const std::string extension = std::filesystem::path(output).extension().string();
+  if (!io::is_picture_extension(extension)) {
+    return fail(ErrorCode::bad_argument,
+                extension.empty() ? "has no ending that names a format of pictures"
+                                  : fmt::format("'{}' is no format of pictures that we write", extension),
+                output, "end it in .png or .webp");
+  }
+  if (const Result<void> checked = check_place(output, {input}); !checked) return fail(checked.error());
+  return output;
+}
+
+// Numbers are shown by heat alone, and heat shows numbers.
+Result<void> read_heat(const Arguments& arguments, Request& request) {
+  request.attribute = arguments.text("--attribute");
+  if (request.attribute.empty() && request.shading == render::Shading::heat) {
+    return fail(ErrorCode::bad_argument, "--shading heat needs the numbers to show", {},
+                "add --attribute NAME; 'lod info' lists a model's attributes");
+  }
+  if (!request.attribute.empty() && !request.shading) request.shading = render::Shading::heat;
+  if (request.shading == render::Shading::heat) return {};
+  for (const char* option : {"--attribute", "--range"}) {
+    if (!arguments.has(option)) continue;
+    return fail(ErrorCode::bad_argument, fmt::format("{} needs --shading heat", option), {}, "add it");
+  }
+  return {};
+}
+
+Result<Request> request_of(const Arguments& arguments) {
+  Request request;
+  request.input = arguments.inputs.front();
+  request.shading = shading_of(arguments.text("--shading"));
+  if (const Result<void> read = read_heat(arguments, request); !read) return fail(read.error());
+  const Result<CameraChoice> camera = camera_choice(arguments);
+  if (!camera) return fail(camera.error());
+  const Result<render::RenderOptions> options = render_options(arguments);
+  if (!options) return fail(options.error());
+  const Result<std::uint64_t> level = arguments.count("--level", 0, 1024);
+  if (!level) return fail(level.error());
+  const Result<std::string> output = output_of(arguments);
+  if (!output) return fail(output.error());
+  request.camera = *camera;
+  request.options = *options;
+  request.level = static_cast<std::size_t>(*level);
+  request.output = *output;
+  return request;
+}
+
+Result<Model> read_level(const Request& request, const Console& console, const Task& task) {
+  if (request.level > 0) {
+    const std::uint64_t levels = levels_in_file(request.input);
+    if (levels == 1) {
+      return fail(ErrorCode::bad_argument, "--level is for files with levels (MSFT_lod), this one has none",
+                  request.input, "make them with 'lod build'");
+    }
+    if (request.level >= levels) {
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("has no level {}, its levels are 0 to {}", request.level, levels - 1), request.input);
+    }
+  }
+  io::ReadOptions options;
+  options.draw_level = request.level;
+  return read_input(request.input, console, task, options);
+}
+
+std::array<double, 3> triple(Vec3d v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+Result<ExitCode> run_render(const Arguments& arguments, Console& console) {
+  const Result<Request> asked = request_of(arguments);
+  if (!asked) return fail(asked.error());
+  const Request& request = *asked;
+  RenderReport report;
+  report.input = request.input;
+  report.file = request.output;
+  report.level = request.level;
+
+  Stopwatch watch;
+  Result<Model> model = read_level(request, console, console.task().part(0.5, "reading"));
+  if (!model) return fail(model.error());
+  if (const Result<void> kept = io::check_replaced(*model, request.output); !kept) return fail(kept.error());
+  report.warnings = model->warnings;
+  const auto tell = [&](const std::string& text) {
+    console.note(fmt::format("{}: {}", request.input, text));
+    report.warnings.push_back(text);
+  };
+  std::vector<std::string> undecoded;
+  if (const auto done = io::decode_base_colors(*model, undecoded, console.task()); !done) return fail(done.error());
+  for (const std::string& warning : undecoded) tell(warning);
+  report.read_seconds = watch.lap();
+
+  render::SceneOptions scene_options;
+  scene_options.attribute = request.attribute;
+  const Result<render::Scene> scene =
+      render::Scene::create(*model, scene_options, console.task().part(0.2, "preparing"));
+  if (!scene) return fail(scene.error());
+  report.triangles = scene->triangle_count();
+  report.prepare_seconds = watch.lap();
+
+  render::RenderOptions options = request.options;
+  options.shading = request.shading.value_or(render::default_shading(*scene));
+  report.shading = name_of(options.shading);
+  if (options.shading == render::Shading::textured) {
+    for (const std::string& note : scene->notes()) tell(note);
+  }
+  if (options.shading == render::Shading::heat) {
+    const render::HeatRange range = options.heat_range.value_or(render::default_heat_range(*scene));
+    report.heat_range = {range.least, range.largest};
+  }
+  const Camera camera = request.camera.camera(*scene, static_cast<double>(options.width) / options.height);
+  report.eye = triple(camera.eye);
+  report.forward = triple(camera.forward);
+  report.up = triple(camera.up);
+  const Result<Pixels> picture = render::render(*scene, camera, options, console.task().part(0.2, "drawing"));
+  if (!picture) return fail(picture.error());
+  report.width = picture->width;
+  report.height = picture->height;
+  report.draw_seconds = watch.lap();
+
+  const Result<std::uint64_t> written = io::write_picture(*picture, request.output);
+  if (!written) return fail(written.error());
+  console.wrote(request.output);
+  report.bytes = *written;
+  report.write_seconds = watch.lap();
+  console.result(arguments.has("--json")
+                     ? to_json(report)
+                     : fmt::format("{}: {} x {} pixels, {} triangles, {}\n", printable(report.file), report.width,
+                                   report.height, with_separators(report.triangles), human_bytes(report.bytes)));
+  return ExitCode::done;
+}
+
+}  // namespace lodestone::app

@@ -1,0 +1,49 @@
+#include "lodestone/io/image_encode.h"
+
+#include <fmt/format.h>
+
+#include "lodestone/base/file.h"
+#include "lodestone/io/image_codecs_detail.h"
+#include "lodestone/io/text_reader_detail.h"
+
+namespace lodestone::io {
+
+bool has_alpha(const Pixels& pixels) {
+  for (std::size_t i = 3; i < pixels.rgba.size(); i += 4) {
+    if (pixels.rgba[i] != 255) return true;
+  }
+  return false;
+}
+
+std::vector<std::uint8_t> without_alpha(const Pixels& pixels) {
+  std::vector<std::uint8_t> rgb(pixels.rgba.size() / 4 * 3);
+  for (std::size_t i = 0, o = 0; o < rgb.size(); i += 4, o += 3) {
+    for (std::size_t k = 0; k < 3; ++k) rgb[o + k] = pixels.rgba[i + k];
+  }
+  return rgb;
+}
+
+bool is_picture_extension(std::string_view extension) {
+  const std::string lower = lower_case(extension);
+  return lower == ".png" || lower == ".webp";
+}
+
+Result<std::uint64_t> write_picture(const Pixels& pixels, const std::filesystem::path& path) {
+  const std::string extension = lower_case(path.extension().string());
+  if (!is_picture_extension(extension)) {
+    return fail(ErrorCode::bad_argument, fmt::format("'{}' is no format of pictures that we write", extension),
+                path.string(), "end it in .png or .webp");
+  }
+  if (pixels.width == 0 || pixels.height == 0) return fail(ErrorCode::bad_argument, "the picture has no pixels");
+  const Result<std::string> encoded =
+      extension == ".png" ? encode_png(pixels, path.string()) : encode_webp(pixels, path.string());
+  if (!encoded) return fail(encoded.error());
+  Result<OutputFile> file = OutputFile::create(path);
+  if (!file) return fail(file.error());
+  file->write(std::string_view(*encoded));
+  const std::uint64_t bytes = file->size();
+  if (const Result<void> done = file->commit(); !done) return fail(done.error());
+  return bytes;
+}
+
+}  // namespace lodestone::io

@@ -1,0 +1,22 @@
+// Writing pictures: PNG and lossless WebP.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "lodestone/base/result.h"
+#include "lodestone/core/pixels.h"
+
+namespace lodestone::io {
+
+/// True for the endings that write_picture() knows, with the dot, any case: .png, .webp.
+bool is_picture_extension(std::string_view extension);
+
+/// Encodes by the name's ending and puts the file under its name whole or not at all; returns its bytes. Pictures
+/// without alpha are written without. Errors: bad_argument (another ending, no pixels), unsupported (larger than the
+/// format allows), cannot_write.
+Result<std::uint64_t> write_picture(const Pixels& pixels, const std::filesystem::path& path);
+
+}  // namespace lodestone::io
