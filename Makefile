@@ -1,5 +1,5 @@
 # Short names for the scripts under tools/, which also run where make is not installed yet.
-.PHONY: demo test check bench bench-peers bench-attributes
+.PHONY: demo test check bench bench-growth bench-peers bench-attributes
 demo:
 	@tools/demo "$(IN)"
 test:
@@ -8,6 +8,8 @@ check:
 	@tools/check fast
 bench:
 	@IN="$(IN)" tools/bench
+bench-growth:
+	@tools/bench_growth
 bench-peers:
 	@tools/bench_peers
 bench-attributes:

@@ -1,5 +1,12 @@
 #include "bench/peers/peer.h"
 
+#if __has_include(<valgrind/callgrind.h>)
+#include <valgrind/callgrind.h>
+#else
+#define CALLGRIND_START_INSTRUMENTATION
+#define CALLGRIND_STOP_INSTRUMENTATION
+#endif
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -45,6 +52,14 @@ int fail_with(const std::string& what) {
 
 double now_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void count_instructions(bool on) {
+  if (on) {
+    CALLGRIND_START_INSTRUMENTATION;
+  } else {
+    CALLGRIND_STOP_INSTRUMENTATION;
+  }
 }
 
 int run(int argc, char** argv, const std::vector<NamedMethod>& methods) {
