@@ -184,6 +184,23 @@ Json shape_json(const measure::Shape& shape) {
   return json;
 }
 
+Json image_json(const measure::ImageDeviation& image) {
+  Json json{{"views", image.views},
+            {"size_px", image.size_px},
+            {"silhouette_mean", image.silhouette_mean},
+            {"silhouette_max", image.silhouette_max},
+            {"screen_max_px", image.screen_max_px},
+            {"shading_psnr", image.shading_psnr},
+            {"shading_ssim", image.shading_ssim},
+            {"color_psnr", nullptr},
+            {"color_ssim", nullptr}};
+  if (image.has_color) {
+    json["color_psnr"] = image.color_psnr;
+    json["color_ssim"] = image.color_ssim;
+  }
+  return json;
+}
+
 std::string to_json(const MeasureReport& report) {
   const measure::Distance& d = report.distance;
   Json json;
@@ -205,6 +222,7 @@ std::string to_json(const MeasureReport& report) {
   json["diagonal"] = d.diagonal;
   json["unit"] = unit_or_null(report.unit);
   json["shape"] = {{"a", shape_json(report.shape_a)}, {"b", shape_json(report.shape_b)}};
+  if (report.image) json["image"] = image_json(*report.image);
   if (report.attributes) json["attributes"] = attributes_json(*report.attributes);
   json["seconds"] = report.seconds;
   return text_of(json);

@@ -68,6 +68,20 @@ std::string shape_table(const MeasureReport& report) {
   return "\n" + table.text();
 }
 
+std::string table_of(const measure::ImageDeviation& image) {
+  Table table;
+  table.add_column("pictures", Table::Align::left);
+  for (const char* title : {"silhouette, mean", "worst", "farthest", "PSNR", "SSIM"}) table.add_column(title);
+  const auto row = [&](const char* name, bool first, double psnr, double ssim) {
+    table.add_row({name, first ? percent(image.silhouette_mean) : "", first ? percent(image.silhouette_max) : "",
+                   first ? fmt::format("{:.1f} px", image.screen_max_px) : "", fmt::format("{:.1f} dB", psnr),
+                   fmt::format("{:.4f}", ssim)});
+  };
+  row("shading", true, image.shading_psnr, image.shading_ssim);
+  if (image.has_color) row("colours", false, image.color_psnr, image.color_ssim);
+  return fmt::format("\n{}\n{} views, {} x {} pixels\n", table.text(), image.views, image.size_px, image.size_px);
+}
+
 std::string table_of(const MeasureReport& report) {
   const measure::Distance& d = report.distance;
   Table table;
@@ -87,7 +101,8 @@ std::string table_of(const MeasureReport& report) {
   table.add_row({"of the diagonal", percent(d.relative(d.sampled_max)), percent(d.relative(d.max)),
                  percent(d.relative(d.bound)), percent(d.relative(d.mean)), "", "", percent(d.relative(d.rms)), ""});
   const std::string attributes = report.attributes ? table_of(*report.attributes) : "";
-  return table.text() + shape_table(report) + attributes +
+  const std::string image = report.image ? table_of(*report.image) : "";
+  return table.text() + shape_table(report) + attributes + image +
          fmt::format("\n{} samples a direction, diagonal of A {}, {} s\n", with_separators(d.samples),
                      short_number(d.diagonal), seconds_text(report.seconds));
 }
@@ -119,6 +134,26 @@ Result<measure::Attributes> measure_attributes(Model& a, Model& b, const measure
   }
   for (const std::string& warning : warnings) console.note(warning);
   return measure::attribute_deviation(a, b, options, task);
+}
+
+Result<measure::ImageOptions> image_options(const Arguments& arguments) {
+  measure::ImageOptions options;
+  const Result<std::uint64_t> views = arguments.count("--views");
+  if (!views) return fail(views.error());
+  options.views = static_cast<int>(std::min<std::uint64_t>(*views, 1000));
+  return options;
+}
+
+Result<measure::ImageDeviation> measure_image(Model& a, Model& b, const measure::ImageOptions& options,
+                                              const Task& task) {
+  std::vector<std::string> told;  // what can't be decoded is drawn in a marked pattern
+  for (Model* model : {&a, &b}) {
+    const Result<void> decoded = io::decode_base_colors(*model, told, task);
+    if (!decoded) return fail(decoded.error());
+  }
+  const Result<measure::ImageReference> reference = measure::ImageReference::create(a, options, task.part(0.5));
+  if (!reference) return fail(reference.error());
+  return reference->deviation_of(b, task.part(0.5));
 }
 
 // --bounded: until the bound is within that length, whatever it takes.
@@ -179,6 +214,13 @@ Result<ExitCode> run_measure(const Arguments& arguments, Console& console) {
         measure_attributes(*a, *b, **attributes, console, console.task().part(0.4, "measuring attributes"));
     if (!found) return fail(found.error());
     report.attributes = *found;
+  }
+  if (arguments.has("--image")) {
+    const Result<measure::ImageOptions> image = image_options(arguments);
+    if (!image) return fail(image.error());
+    const Result<measure::ImageDeviation> found = measure_image(*a, *b, *image, console.task().part(0.2, "drawing"));
+    if (!found) return fail(found.error());
+    report.image = *found;
   }
   report.seconds = watch.total();
   console.result(arguments.has("--json") ? to_json(report) : table_of(report));

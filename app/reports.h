@@ -12,6 +12,7 @@
 #include "lodestone/core/topology.h"
 #include "lodestone/measure/attributes.h"
 #include "lodestone/measure/distance.h"
+#include "lodestone/measure/image.h"
 #include "lodestone/measure/shape.h"
 
 namespace lodestone::app {
@@ -58,6 +59,7 @@ struct MeasureReport {
   measure::Distance distance;
   measure::Shape shape_a, shape_b;
   std::optional<measure::Attributes> attributes;  ///< with --attributes
+  std::optional<measure::ImageDeviation> image;   ///< with --image
   double seconds = 0;
 };
 

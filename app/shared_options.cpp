@@ -7,6 +7,7 @@
 
 #include "lodestone/base/units.h"
 #include "lodestone/chain/build_ladder.h"
+#include "lodestone/measure/image.h"
 
 namespace lodestone::app {
 namespace {
@@ -134,6 +135,20 @@ OptionGroup with_bounded(OptionGroup group) {
                            {},
                            Completion::none});
   return group;
+}
+
+OptionGroup image_group() {
+  return {
+      "Pictures",
+      {{"--image", "", "", "", "", "one more table: pictures of both from all sides, compared", {}, Completion::none},
+       {"--views",
+        "",
+        "N",
+        fmt::format("{}", measure::ImageOptions{}.views),
+        "4, 6, 8, 12 or 20",
+        "pictures to compare; needs --image",
+        {},
+        Completion::none}}};
 }
 
 OptionGroup attribute_group() {

@@ -22,10 +22,12 @@ OptionGroup unit_group();           ///< --unit
 OptionGroup measuring_group(std::uint64_t samples);
 /// With --bounded.
 OptionGroup with_bounded(OptionGroup group);  ///< --samples, --seed
-OptionGroup attribute_group();                ///< --attributes, --uv-set
-OptionGroup output_group(bool compress);      ///< -o, --compress, --json
-OptionGroup result_group();                   ///< --json alone
-OptionGroup general_group();                  ///< --threads, --quiet, --verbose, --help
+OptionGroup attribute_group();
+/// --image, --views.
+OptionGroup image_group();                ///< --attributes, --uv-set
+OptionGroup output_group(bool compress);  ///< -o, --compress, --json
+OptionGroup result_group();               ///< --json alone
+OptionGroup general_group();              ///< --threads, --quiet, --verbose, --help
 
 /// More levels than these are no ladder but a slip of the keyboard.
 inline constexpr std::uint64_t kMostLevels = 32;

@@ -52,7 +52,7 @@ VerbSpec measure_spec() {
       "measure",
       "Measures the distance between two surfaces, both ways; A is the original.",
       {"A B", 2, 2, {}, Completion::file},
-      {with_bounded(measuring_group(kMeasureSamples)), attribute_group(), unit_group(), result_group(),
+      {with_bounded(measuring_group(kMeasureSamples)), attribute_group(), image_group(), unit_group(), result_group(),
        general_group()},
       {{"lod measure statue.ply small.ply", "how far apart they are"},
        {"lod measure statue.ply small.ply --bounded 0.01%",
