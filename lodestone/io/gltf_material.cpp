@@ -80,6 +80,10 @@ Material read_material(const Document::Data& data, const Json& json) {
   material.name = string_member(json, "name");
   const Json* sided = member(json, "doubleSided");
   material.double_sided = sided != nullptr && sided->is_boolean() && sided->get<bool>();
+  if (string_member(json, "alphaMode") == "MASK") {
+    const Json* cutoff = member(json, "alphaCutoff");
+    material.alpha_cutoff = cutoff != nullptr && cutoff->is_number() ? cutoff->get<float>() : 0.5F;
+  }
   material.metallic = 1;
   const Json* pbr = member(json, "pbrMetallicRoughness");
   if (pbr == nullptr) return material;
