@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <span>
 
 #include "app/input.h"
 #include "app/json.h"
 #include "app/render_options.h"
 #include "app/text.h"
 #include "app/verbs.h"
+#include "lodestone/base/file.h"
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 #include "lodestone/io/image_decode.h"
@@ -97,6 +100,25 @@ Result<Model> read_level(const Request& request, const Console& console, const T
   return read_input(request.input, console, task, options);
 }
 
+// The picture must not replace a file of the input. Model::files doesn't name the textures of OBJ and PLY: these show
+// by their bytes.
+Result<void> check_kept(const Model& model, const std::string& output) {
+  if (const Result<void> kept = io::check_replaced(model, output); !kept) return kept;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(output, ignored)) return {};
+  const Result<std::string> there = read_file(output);
+  if (!there) return fail(there.error());
+  for (const Material& material : model.materials) {
+    if (material.base_color_texture == nullptr) continue;
+    const std::vector<std::byte>& texture = material.base_color_texture->encoded;
+    if (std::ranges::equal(std::as_bytes(std::span(*there)), texture)) {
+      return fail(ErrorCode::cannot_write, "is a texture of the input, which is never overwritten", output,
+                  "choose another name for -o");
+    }
+  }
+  return {};
+}
+
 std::array<double, 3> triple(Vec3d v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
@@ -113,7 +135,7 @@ Result<ExitCode> run_render(const Arguments& arguments, Console& console) {
   Stopwatch watch;
   Result<Model> model = read_level(request, console, console.task().part(0.5, "reading"));
   if (!model) return fail(model.error());
-  if (const Result<void> kept = io::check_replaced(*model, request.output); !kept) return fail(kept.error());
+  if (const Result<void> kept = check_kept(*model, request.output); !kept) return fail(kept.error());
   report.warnings = model->warnings;
   const auto tell = [&](const std::string& text) {
     console.note(fmt::format("{}: {}", request.input, text));

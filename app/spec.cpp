@@ -70,7 +70,7 @@ VerbSpec measure_spec() {
 
 VerbSpec render_spec() {
   return {"render",
-          "Draws a picture of a model, without a display: shaded, textured, as wires, or with numbers as colours.",
+          "Draws a picture of a model without a display: shaded, textured, as wires, numbers as colours.",
           one_model(),
           {camera_group(), look_group(), picture_group(), general_group()},
           {{"lod render statue.ply -o statue.png", "from the front and a little above, in grey"},

@@ -35,6 +35,7 @@ struct Material {
   /// The texture decoded; null until io::decode_base_colors() was asked for it, or where it can't be decoded.
   std::shared_ptr<const Pixels> base_color_pixels;
   bool double_sided = false;
+  float alpha_cutoff = 0;  ///< nothing is drawn where alpha is below it (glTF's MASK); 0 = no mask
 };
 
 }  // namespace lodestone

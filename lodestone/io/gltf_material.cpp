@@ -1,9 +1,9 @@
 // Materials of a glTF document, as far as drawing and other formats need them; writing glTF uses the document itself.
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "lodestone/io/gltf_detail.h"
+#include "lodestone/math/angle.h"
 
 namespace lodestone::io {
 
@@ -67,9 +67,10 @@ TextureCoordinates read_coordinates(const Json& info) {
   if (!numbers_member(*transform, "scale", scale, "")) scale = {1, 1};
   double cosine = 1, sine = 0;
   if (const Json* angle = member(*transform, "rotation"); angle != nullptr && angle->is_number()) {
-    // For looking at textures only: what is written keeps the document's own numbers.
-    cosine = std::cos(angle->get<double>());
-    sine = std::sin(angle->get<double>());
+    constexpr double kDegrees = 180 / 3.14159265358979323846;
+    const SinCos turn = sin_cos_degrees(angle->get<double>() * kDegrees);
+    cosine = turn.cos;
+    sine = turn.sin;
   }
   out.map = {scale[0] * cosine, scale[1] * sine, offset[0], -scale[0] * sine, scale[1] * cosine, offset[1]};
   return out;
@@ -80,6 +81,10 @@ Material read_material(const Document::Data& data, const Json& json) {
   material.name = string_member(json, "name");
   const Json* sided = member(json, "doubleSided");
   material.double_sided = sided != nullptr && sided->is_boolean() && sided->get<bool>();
+  if (string_member(json, "alphaMode") == "MASK") {
+    const Json* cutoff = member(json, "alphaCutoff");
+    material.alpha_cutoff = cutoff != nullptr && cutoff->is_number() ? cutoff->get<float>() : 0.5F;
+  }
   material.metallic = 1;
   const Json* pbr = member(json, "pbrMetallicRoughness");
   if (pbr == nullptr) return material;

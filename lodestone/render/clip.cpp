@@ -19,6 +19,14 @@ double side(const Projection& projection, Vec3d eye, std::size_t plane) {
   return plane == 1 ? x + kLimit * w : plane == 2 ? kLimit * w - x : plane == 3 ? y + kLimit * w : kLimit * w - y;
 }
 
+// Where a side crosses a plane, from its inner end (distance above 0) to the outer one (below 0): always in this order,
+// so that both neighbours of the side find the same point. Weights of both ends instead of a step from one of them: the
+// far end may be so far that a step would lose all digits of the near one.
+Vec3d crossing(Vec3d inner, double inside, Vec3d outer, double outside) {
+  const double span = inside - outside;
+  return inner * (-outside / span) + outer * (inside / span);
+}
+
 ScreenVertex snapped(const Projection& projection, Vec3d eye) {
   eye.z = std::max(eye.z, projection.near_distance());
   const Vec2d pixel = projection.to_pixel(eye);
@@ -46,8 +54,7 @@ ClippedPolygon clip(const Projection& projection, const std::array<Vec3d, 3>& wo
       const double da = side(projection, a, plane), db = side(projection, b, plane);
       if (da >= 0) next[kept++] = a;
       if ((da >= 0) == (db >= 0)) continue;
-      // Always from the inner end to the outer one, so that both neighbours of a side find the same point.
-      next[kept++] = da >= 0 ? lerp(a, b, da / (da - db)) : lerp(b, a, db / (db - da));
+      next[kept++] = da >= 0 ? crossing(a, da, b, db) : crossing(b, db, a, da);
     }
     polygon = next;
     count = kept;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "lodestone/render/frame.h"
+#include "lodestone/render/holes_detail.h"
 #include "lodestone/render/raster_detail.h"
 
 namespace lodestone::render::detail {
@@ -30,6 +31,11 @@ Raster::Raster(const SceneData& scene, const Camera& camera, std::uint32_t width
     : scene_(scene), pattern_(SamplePattern::of(samples)), projection_(camera, width, height, scene.bounds) {
   vertices_ = projection_.project_all(scene.surface.positions, task);
   bins_ = bin_triangles(projection_, scene.surface.positions, vertices_, scene.surface.triangles, pattern_, task);
+}
+
+void Raster::draw(std::int32_t column, std::int32_t row, SampleTile& tile) const {
+  const Holes holes(*this);
+  draw_tile(bins_, column, row, pattern_, scene_.masked ? &holes : nullptr, tile);
 }
 
 }  // namespace lodestone::render::detail

@@ -37,12 +37,14 @@ class Raster {
     parallel_for(columns * rows, 1, task, [&](std::size_t index, std::size_t, std::size_t) {
       const auto column = static_cast<std::int32_t>(index % columns), row = static_cast<std::int32_t>(index / columns);
       SampleTile tile;
-      draw_tile(bins_, column, row, pattern_, tile);
+      draw(column, row, tile);
       body(tile, static_cast<std::uint32_t>(column * kTile), static_cast<std::uint32_t>(row * kTile));
     });
   }
 
  private:
+  void draw(std::int32_t column, std::int32_t row, SampleTile& tile) const;
+
   const SceneData& scene_;
   SamplePattern pattern_;
   Projection projection_;

@@ -1,8 +1,8 @@
 #include "lodestone/render/render.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "lodestone/render/legend_detail.h"
 #include "lodestone/render/raster_detail.h"
 #include "lodestone/render/shade_detail.h"
 #include "lodestone/render/tone_detail.h"
@@ -99,6 +99,7 @@ Result<Pixels> render(const Scene& scene, const Camera& camera, const RenderOpti
     }
   });
   if (task.cancelled()) return cancelled_error("drawing");
+  if (options.shading == Shading::heat && options.legend) detail::draw_legend(pixels, range, options.unit);
   return pixels;
 }
 

@@ -34,6 +34,7 @@ void make_looks(const Model& model, SceneData& data) {
     Look look;
     look.color = {material.base_color[0], material.base_color[1], material.base_color[2]};
     look.alpha = material.base_color[3];
+    look.alpha_cutoff = material.alpha_cutoff;
     look.double_sided = material.double_sided;
     const auto& pixels = material.base_color_pixels;
     if (pixels != nullptr && pixels->width > 0 && pixels->height > 0) {
@@ -49,6 +50,7 @@ void make_looks(const Model& model, SceneData& data) {
     data.looks.push_back(look);
   }
   data.looks.emplace_back();
+  data.masked = std::any_of(data.looks.begin(), data.looks.end(), [](const Look& l) { return l.alpha_cutoff > 0; });
 }
 
 }  // namespace

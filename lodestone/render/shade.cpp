@@ -77,8 +77,7 @@ Vec3f Shader::texture_color(std::uint32_t id, Vec2f at, const Fragment& fragment
   if (scene_.uvs.empty() || (look.texture == nullptr && !look.missing)) return {1, 1, 1};
   const Corners<Vec2f>& uv = scene_.uvs[id];
   const auto uv_of = [&](const Fragment& f) {
-    return Vec2f{uv[0].x * f.weight[0] + uv[1].x * f.weight[1] + uv[2].x * f.weight[2],
-                 uv[0].y * f.weight[0] + uv[1].y * f.weight[1] + uv[2].y * f.weight[2]};
+    return Vec2f{f.mix(uv[0].x, uv[1].x, uv[2].x), f.mix(uv[0].y, uv[1].y, uv[2].y)};
   };
   const Vec2f here = uv_of(fragment);
   if (look.missing) {

@@ -9,6 +9,8 @@
 
 namespace lodestone::render::detail {
 
+class Holes;
+
 /// Samples in cells of four: the four of a pixel, or, with one sample a pixel, those of four pixels in a row.
 struct SampleTile {
   static constexpr std::size_t kSamples = std::size_t{kTile} * kTile * 4;
@@ -23,6 +25,8 @@ struct SampleTile {
 
 /// Draws into the tile at `column`, `row` of the bins everything that touches it, in the surface's order: of two at the
 /// same nearness the first stays. A sample on a side that two triangles share belongs to exactly one of them.
-void draw_tile(const Bins& bins, std::int32_t column, std::int32_t row, const SamplePattern& pattern, SampleTile& tile);
+/// `holes`: null where no look has any.
+void draw_tile(const Bins& bins, std::int32_t column, std::int32_t row, const SamplePattern& pattern,
+               const Holes* holes, SampleTile& tile);
 
 }  // namespace lodestone::render::detail

@@ -41,7 +41,8 @@ std::vector<Key> hilbert_keys(const Surface& surface, const Task& task) {
     for (std::size_t t = begin; t < end; ++t) {
       const auto [a, b, c] = surface.corners(t);
       const Vec3d p = ((a + b + c) / 3.0 - low) * cells;
-      const auto cell = [](double x) { return static_cast<std::uint32_t>(std::clamp(x, 0.0, 65535.0)); };
+      // Written so that what is no number becomes 0.
+      const auto cell = [](double x) { return static_cast<std::uint32_t>(x > 0 ? std::min(x, 65535.0) : 0.0); };
       keys[t] = {hilbert_key(cell(p.x), cell(p.y), cell(p.z)), static_cast<std::uint32_t>(t)};
     }
   });
