@@ -140,8 +140,11 @@ Result<measure::ImageOptions> image_options(const Arguments& arguments) {
   measure::ImageOptions options;
   const Result<std::uint64_t> views = arguments.count("--views");
   if (!views) return fail(views.error());
-  options.views = static_cast<int>(std::min<std::uint64_t>(*views, 1000));
-  return options;
+  for (const std::uint64_t possible : {4, 6, 8, 12, 20}) {
+    if (*views == possible) options.views = static_cast<int>(possible);
+  }
+  if (*views == static_cast<std::uint64_t>(options.views)) return options;
+  return fail(ErrorCode::bad_argument, fmt::format("--views is {}", *views), {}, "use 4, 6, 8, 12 or 20");
 }
 
 Result<measure::ImageDeviation> measure_image(Model& a, Model& b, const measure::ImageOptions& options,
@@ -188,6 +191,9 @@ Result<ExitCode> run_measure(const Arguments& arguments, Console& console) {
   if (!bounded) return fail(bounded.error());
   if (bounded->size() > 1) return fail(ErrorCode::bad_argument, "--bounded takes one value here");
 
+  const Result<measure::ImageOptions> image = image_options(arguments);
+  if (!image) return fail(image.error());
+
   Stopwatch watch;
   MeasureReport report;
   report.a = arguments.inputs[0];
@@ -216,8 +222,6 @@ Result<ExitCode> run_measure(const Arguments& arguments, Console& console) {
     report.attributes = *found;
   }
   if (arguments.has("--image")) {
-    const Result<measure::ImageOptions> image = image_options(arguments);
-    if (!image) return fail(image.error());
     const Result<measure::ImageDeviation> found = measure_image(*a, *b, *image, console.task().part(0.2, "drawing"));
     if (!found) return fail(found.error());
     report.image = *found;

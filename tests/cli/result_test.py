@@ -55,6 +55,27 @@ class Json(Scratch):
         same = self.json("measure", "statue.ply", "statue.ply", "--samples", "1000")
         self.assertLess(same["relative_max"], 1e-7)
 
+    def test_measure_bounds_and_shapes(self):
+        self.lod("simplify", "statue.ply", "-o", "a.ply", "--triangles", "500")
+        report = self.json("measure", "statue.ply", "a.ply", "--samples", "20000", "--bounded", "0.05%")
+        self.assertLessEqual(report["max"], report["found_max"])
+        self.assertLessEqual(report["found_max"], report["bound"])
+        self.assertLessEqual(report["bound"] - report["found_max"], 0.0005 * report["diagonal"] + 1e-12)
+        self.assertTrue(report["is_bounded"])
+        self.assertEqual(sum(report["forward"]["histogram"]), 20000)
+        self.assertLess(report["forward"]["median"], report["forward"]["percentile_95"])
+        self.assertEqual((report["shape"]["a"]["genus"], report["shape"]["b"]["triangles"]), (0, 500))
+        self.assert_error(self.lod("measure", "statue.ply", "a.ply", "--bounded", "0", code=2), "--bounded")
+
+    def test_measure_pictures(self):
+        self.lod("simplify", "statue.ply", "-o", "a.ply", "--triangles", "500")
+        image = self.json("measure", "statue.ply", "a.ply", "--samples", "1000", "--image", "--views", "4")["image"]
+        self.assertEqual(image["views"], 4)
+        self.assertLess(0, image["silhouette_mean"])
+        self.assertLess(image["shading_ssim"], 1)
+        self.assertIsNone(image["color_psnr"])
+        self.assert_error(self.lod("measure", "statue.ply", "a.ply", "--image", "--views", "5", code=2), "4, 6, 8, 12 or 20")
+
     def test_measure_attributes(self):
         self.lod("sample", "terrain", "--triangles", "4000", "-o", "terrain.glb")
         self.lod("simplify", "terrain.glb", "-o", "a.glb", "--triangles", "500")
