@@ -140,7 +140,7 @@ Result<measure::ImageOptions> image_options(const Arguments& arguments) {
   measure::ImageOptions options;
   const Result<std::uint64_t> views = arguments.count("--views");
   if (!views) return fail(views.error());
-  for (const std::uint64_t possible : {4, 6, 8, 12, 20}) {
+  for (const unsigned possible : {4U, 6U, 8U, 12U, 20U}) {
     if (*views == possible) options.views = static_cast<int>(possible);
   }
   if (*views == static_cast<std::uint64_t>(options.views)) return options;

@@ -51,7 +51,7 @@ class Search {
   void add(std::uint32_t triangle) {
     const auto& v = from_.triangles[triangle];
     Piece piece;
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
       piece.corners[i] = {from_.positions[v[i]], at_vertices_[v[i]].distance, at_vertices_[v[i]].triangle};
     }
     piece.triangle = triangle;
@@ -93,9 +93,9 @@ class Search {
 
   void halve(const Piece& piece) {
     const auto& c = piece.corners;
-    int longest = 0;
+    std::size_t longest = 0;
     double length = -1;
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
       const double side = length_sq(c[(i + 1) % 3].at - c[i].at);
       if (side > length) {
         length = side;
