@@ -103,7 +103,7 @@ TEST(CollapseAttributes, values_never_leave_the_range_of_the_input) {
   const Mesh in = with_stream(test::torus(40), "COLOR_0", Semantic::color, 4, [](Vec3f p, float* c) {
     for (std::size_t k = 0; k < 4; ++k) c[k] = std::sin(9.0 * double{p.x} + static_cast<double>(k)) > 0 ? 1.0F : 0.0F;
   });
-  for (const std::size_t target : {1000, 200, 40}) {
+  for (const std::size_t target : {1000U, 200U, 40U}) {
     const Mesh out = collapse(in, target).mesh;
     for (const float value : floats(out)) {
       EXPECT_GE(value, 0);
