@@ -25,7 +25,7 @@ std::string number(double value, double span) {
 
 void draw_legend(Pixels& pixels, const HeatRange& range, const std::string& unit) {
   const auto width = static_cast<std::int32_t>(pixels.width), height = static_cast<std::int32_t>(pixels.height);
-  const std::int32_t scale = std::max(1, height / 400), gap = 4 * scale;
+  const std::int32_t scale = std::max(1, height / 300), gap = 4 * scale;
   std::vector<std::string> values;
   std::int32_t text_width = width_of(unit);
   for (std::int32_t i = 0; i <= kSteps; ++i) {
