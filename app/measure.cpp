@@ -125,35 +125,34 @@ Result<std::optional<measure::AttributeOptions>> attribute_options(const Argumen
   return std::optional(options);
 }
 
-Result<measure::Attributes> measure_attributes(Model& a, Model& b, const measure::AttributeOptions& options,
-                                               const Console& console, const Task& task) {
+// What attributes and pictures need. Textures that can't be decoded are told.
+Result<void> decode_textures(Model& a, Model& b, const Console& console, const Task& task) {
   std::vector<std::string> warnings;
   for (Model* model : {&a, &b}) {
-    const Result<void> decoded = io::decode_base_colors(*model, warnings, task);
-    if (!decoded) return fail(decoded.error());
+    if (Result<void> decoded = io::decode_base_colors(*model, warnings, task); !decoded) return decoded;
   }
   for (const std::string& warning : warnings) console.note(warning);
-  return measure::attribute_deviation(a, b, options, task);
+  return {};
 }
 
-Result<measure::ImageOptions> image_options(const Arguments& arguments) {
+// The options of the pictures; nothing without --image.
+Result<std::optional<measure::ImageOptions>> image_options(const Arguments& arguments) {
+  if (!arguments.has("--image")) {
+    if (!arguments.has("--views")) return std::optional<measure::ImageOptions>();
+    return fail(ErrorCode::bad_argument, "--views needs --image", {}, "add --image");
+  }
   measure::ImageOptions options;
   const Result<std::uint64_t> views = arguments.count("--views");
   if (!views) return fail(views.error());
   for (const unsigned possible : {4U, 6U, 8U, 12U, 20U}) {
     if (*views == possible) options.views = static_cast<int>(possible);
   }
-  if (*views == static_cast<std::uint64_t>(options.views)) return options;
+  if (*views == static_cast<std::uint64_t>(options.views)) return std::optional(options);
   return fail(ErrorCode::bad_argument, fmt::format("--views is {}", *views), {}, "use 4, 6, 8, 12 or 20");
 }
 
-Result<measure::ImageDeviation> measure_image(Model& a, Model& b, const measure::ImageOptions& options,
-                                              const Task& task) {
-  std::vector<std::string> told;  // what can't be decoded is drawn in a marked pattern
-  for (Model* model : {&a, &b}) {
-    const Result<void> decoded = io::decode_base_colors(*model, told, task);
-    if (!decoded) return fail(decoded.error());
-  }
+Result<measure::ImageDeviation> compare_pictures(const Model& a, const Model& b, const measure::ImageOptions& options,
+                                                 const Task& task) {
   const Result<measure::ImageReference> reference = measure::ImageReference::create(a, options, task.part(0.5));
   if (!reference) return fail(reference.error());
   return reference->deviation_of(b, task.part(0.5));
@@ -177,23 +176,73 @@ Result<measure::Distance> measure_distance(const Model& a, const Model& b, measu
   return reference->distance_to(b, options, task);
 }
 
+struct MeasurePlan {
+  LengthRules lengths;
+  measure::DistanceOptions distance;
+  std::vector<LengthArgument> bounded;  // one, or none without --bounded
+  std::optional<measure::AttributeOptions> attributes;
+  std::optional<measure::ImageOptions> image;
+};
+
+Result<MeasurePlan> plan_of(const Arguments& arguments) {
+  MeasurePlan plan;
+  const Result<LengthRules> lengths = length_rules(arguments);
+  if (!lengths) return fail(lengths.error());
+  plan.lengths = *lengths;
+  const Result<measure::DistanceOptions> distance = distance_options(arguments);
+  if (!distance) return fail(distance.error());
+  plan.distance = *distance;
+  if (arguments.has("--bounded")) {
+    Result<std::vector<LengthArgument>> bounded = length_list(arguments, "--bounded", plan.lengths);
+    if (!bounded) return fail(bounded.error());
+    if (bounded->size() > 1) return fail(ErrorCode::bad_argument, "--bounded takes one value");
+    plan.bounded = std::move(*bounded);
+  }
+  const auto attributes = attribute_options(arguments, plan.distance);
+  if (!attributes) return fail(attributes.error());
+  plan.attributes = *attributes;
+  const auto image = image_options(arguments);
+  if (!image) return fail(image.error());
+  plan.image = *image;
+  return plan;
+}
+
+// Fills in all figures. Each kind of them has a share of the progress.
+Result<void> measure_models(MeasureReport& report, Model& a, Model& b, const MeasurePlan& plan,
+                            const Console& console) {
+  const Task task = console.task().part(0.7);
+  const double extras = (plan.attributes ? 0.4 : 0) + (plan.image ? 0.2 : 0);
+  const Result<measure::Distance> distance =
+      measure_distance(a, b, plan.distance, plan.bounded, task.part(0.95 - extras, "measuring"));
+  if (!distance) return fail(distance.error());
+  report.distance = *distance;
+  const Task counting = task.part(0.05, "counting");
+  const Result<measure::Shape> shape_a = measure::shape_of(a, counting);
+  const Result<measure::Shape> shape_b = shape_a ? measure::shape_of(b, counting) : shape_a;
+  if (!shape_b) return fail(shape_b.error());
+  report.shape_a = *shape_a;
+  report.shape_b = *shape_b;
+  if (plan.attributes || plan.image) {
+    if (Result<void> decoded = decode_textures(a, b, console, task); !decoded) return decoded;
+  }
+  if (plan.attributes) {
+    const auto found = measure::attribute_deviation(a, b, *plan.attributes, task.part(0.4, "measuring attributes"));
+    if (!found) return fail(found.error());
+    report.attributes = *found;
+  }
+  if (plan.image) {
+    const auto found = compare_pictures(a, b, *plan.image, task.part(0.2, "drawing"));
+    if (!found) return fail(found.error());
+    report.image = *found;
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<ExitCode> run_measure(const Arguments& arguments, Console& console) {
-  const Result<measure::DistanceOptions> options = distance_options(arguments);
-  if (!options) return fail(options.error());
-  const auto attributes = attribute_options(arguments, *options);
-  if (!attributes) return fail(attributes.error());
-  const Result<LengthRules> lengths = length_rules(arguments);
-  if (!lengths) return fail(lengths.error());
-  const auto bounded = arguments.has("--bounded") ? length_list(arguments, "--bounded", *lengths)
-                                                  : Result<std::vector<LengthArgument>>{};
-  if (!bounded) return fail(bounded.error());
-  if (bounded->size() > 1) return fail(ErrorCode::bad_argument, "--bounded takes one value here");
-
-  const Result<measure::ImageOptions> image = image_options(arguments);
-  if (!image) return fail(image.error());
-
+  const Result<MeasurePlan> plan = plan_of(arguments);
+  if (!plan) return fail(plan.error());
   Stopwatch watch;
   MeasureReport report;
   report.a = arguments.inputs[0];
@@ -202,29 +251,10 @@ Result<ExitCode> run_measure(const Arguments& arguments, Console& console) {
   if (!a) return fail(a.error());
   Result<Model> b = read_input(report.b, console, console.task().part(0.15, "reading B"));
   if (!b) return fail(b.error());
-  apply_unit(*a, *lengths);
+  apply_unit(*a, plan->lengths);
   report.unit = unit_name(a->meters_per_unit);
-  const double share = *attributes ? 0.3 : 0.7;
-  const Result<measure::Distance> distance =
-      measure_distance(*a, *b, *options, *bounded, console.task().part(share, "measuring"));
-  if (!distance) return fail(distance.error());
-  report.distance = *distance;
-  const Task counting = console.task().part(0.05, "counting");
-  const Result<measure::Shape> shape_a = measure::shape_of(*a, counting);
-  const Result<measure::Shape> shape_b = shape_a ? measure::shape_of(*b, counting) : shape_a;
-  if (!shape_b) return fail(shape_b.error());
-  report.shape_a = *shape_a;
-  report.shape_b = *shape_b;
-  if (*attributes) {
-    const Result<measure::Attributes> found =
-        measure_attributes(*a, *b, **attributes, console, console.task().part(0.4, "measuring attributes"));
-    if (!found) return fail(found.error());
-    report.attributes = *found;
-  }
-  if (arguments.has("--image")) {
-    const Result<measure::ImageDeviation> found = measure_image(*a, *b, *image, console.task().part(0.2, "drawing"));
-    if (!found) return fail(found.error());
-    report.image = *found;
+  if (const Result<void> measured = measure_models(report, *a, *b, *plan, console); !measured) {
+    return fail(measured.error());
   }
   report.seconds = watch.total();
   console.result(arguments.has("--json") ? to_json(report) : table_of(report));

@@ -32,16 +32,6 @@ double corner(std::int64_t x, std::int64_t y, std::int64_t z, Vec3d d, std::uint
   }
 }
 
-// Taylor series, good to 1e-16 up to an eighth of a turn.
-double small_sine(double x) {
-  const double q = x * x;
-  return x * (1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72 * (1 - q / 110 * (1 - q / 156 * (1 - q / 210)))))));
-}
-double small_cosine(double x) {
-  const double q = x * x;
-  return 1 - q / 2 * (1 - q / 12 * (1 - q / 30 * (1 - q / 56 * (1 - q / 90 * (1 - q / 132 * (1 - q / 182))))));
-}
-
 }  // namespace
 
 double gradient_noise(Vec3d p, std::uint64_t seed) {
@@ -77,25 +67,6 @@ double ridged_noise(Vec3d p, int octaves, double gain, std::uint64_t seed) {
     p = p * 2.0 + Vec3d{0.37, 0.11, 0.73};
   }
   return sum / total;
-}
-
-SineCosine sine_cosine(double turns) {
-  const double t = turns - static_cast<double>(floor_of(turns));
-  const auto eighth = static_cast<int>(t * 8);
-  // The nearest multiple of a quarter turn, and what is left: at most an eighth either way.
-  const int quarter = (eighth + 1) / 2;
-  const double rest = (t - quarter * 0.25) * (2 * kPi);
-  const double s = small_sine(rest), c = small_cosine(rest);
-  switch (quarter % 4) {
-    case 0:
-      return {s, c};
-    case 1:
-      return {c, -s};
-    case 2:
-      return {-s, -c};
-    default:
-      return {-c, s};
-  }
 }
 
 double smooth_step(double from, double to, double x) {

@@ -16,12 +16,6 @@ double fractal_noise(Vec3d p, int octaves, double gain, std::uint64_t seed);
 /// As fractal_noise, but folded so that its zero lines become sharp ridges; in [0, 1].
 double ridged_noise(Vec3d p, int octaves, double gain, std::uint64_t seed);
 
-/// Sine and cosine of an angle in turns (1 = 360 degrees), within 1e-15.
-struct SineCosine {
-  double sine, cosine;
-};
-SineCosine sine_cosine(double turns);
-
 inline constexpr double kPi = 3.14159265358979323846;
 
 /// 0 below `from`, 1 above `to`, smooth between.

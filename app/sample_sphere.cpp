@@ -3,6 +3,7 @@
 #include "app/noise.h"
 #include "app/rings.h"
 #include "app/samples.h"
+#include "lodestone/math/angle.h"
 
 namespace lodestone::app {
 namespace {
@@ -72,10 +73,10 @@ Model make_icosphere(int level, const Task& task) {
 
 Model make_sphere(std::size_t triangles, const Task& task) {
   // Places are shares of the half circle from the lower to the upper pole.
-  const RingProfile profile{[](double place) { return 2 * kPi * sine_cosine(place / 2).sine; }, kPi};
+  const RingProfile profile{[](double place) { return 2 * kPi * sin_cos_degrees(180 * place).sin; }, kPi};
   const RingSurface surface = [](double place, double turns) {
-    const SineCosine height = sine_cosine(place / 2), around = sine_cosine(turns);
-    return Vec3d{height.sine * around.sine, -height.cosine, height.sine * around.cosine};
+    const SinCos height = sin_cos_degrees(180 * place), around = sin_cos_degrees(360 * turns);
+    return Vec3d{height.sin * around.sin, -height.cos, height.sin * around.cos};
   };
   Mesh mesh = stack_rings(plan_rings(triangles, profile), surface, task);
   mesh.name = "sphere";

@@ -5,6 +5,7 @@
 #include "app/noise.h"
 #include "app/rings.h"
 #include "app/samples.h"
+#include "lodestone/math/angle.h"
 
 namespace lodestone::app {
 namespace {
@@ -128,11 +129,11 @@ Model make_statue(std::size_t triangles, std::uint64_t seed, const Task& task) {
                             outline.length()};
   const RingSurface surface = [&](double place, double turns) {
     const Row row = outline.at(place), below = outline.at(place - 1e-3), above = outline.at(place + 1e-3);
-    const SineCosine angle = sine_cosine(turns);
-    const Vec3d p{row[1] * angle.sine, row[0], row[3] + row[2] * angle.cosine};
+    const SinCos angle = sin_cos_degrees(360 * turns);
+    const Vec3d p{row[1] * angle.sin, row[0], row[3] + row[2] * angle.cos};
     const double rise = above[0] - below[0], widen = (above[1] + above[2] - below[1] - below[2]) / 2;
-    const Vec3d outward = normalized(Vec3d{angle.sine * rise, -widen, angle.cosine * rise});
-    return sculpted(p, outward, angle.cosine, seed);
+    const Vec3d outward = normalized(Vec3d{angle.sin * rise, -widen, angle.cos * rise});
+    return sculpted(p, outward, angle.cos, seed);
   };
   Mesh mesh = stack_rings(plan_rings(triangles, profile), surface, task);
   mesh.name = "statue";

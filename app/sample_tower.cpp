@@ -5,6 +5,7 @@
 #include "app/noise.h"
 #include "app/rings.h"
 #include "app/samples.h"
+#include "lodestone/math/angle.h"
 
 namespace lodestone::app {
 namespace {
@@ -64,8 +65,8 @@ Mesh disc_mesh(std::uint32_t sides) {
     if (ring < -0.5) return Vec3d{0, -0.080, 0};
     if (ring > static_cast<double>(std::size(kRings)) - 0.5) return Vec3d{0, 0.078, 0};
     const Vec2d r = kRings[static_cast<std::size_t>(ring + 0.5)];
-    const SineCosine a = sine_cosine(turns);
-    return Vec3d{r.x * a.sine, r.y, r.x * a.cosine};
+    const SinCos a = sin_cos_degrees(360 * turns);
+    return Vec3d{r.x * a.sin, r.y, r.x * a.cos};
   });
   mesh.name = "insulator disc";
   return mesh;
@@ -80,9 +81,8 @@ Mesh cable_mesh(std::size_t parts) {
   for (std::size_t i = 0; i <= parts; ++i) {
     const double t = static_cast<double>(i) / static_cast<double>(parts);
     for (std::uint32_t k = 0; k < kSides; ++k) {
-      const SineCosine a = sine_cosine(static_cast<double>(k) / kSides);
-      mesh.positions.push_back(
-          to_float(Vec3d{kRadius * a.cosine, kRadius * a.sine - 4 * kSag * t * (1 - t), t * kSpan}));
+      const SinCos a = sin_cos_degrees(360 * static_cast<double>(k) / kSides);
+      mesh.positions.push_back(to_float(Vec3d{kRadius * a.cos, kRadius * a.sin - 4 * kSag * t * (1 - t), t * kSpan}));
     }
   }
   for (std::size_t i = 0; i < parts; ++i) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "lodestone/base/memory.h"
 #include "lodestone/io/obj_faces_detail.h"
 #include "lodestone/io/obj_materials_detail.h"
 #include "lodestone/io/obj_words_detail.h"
@@ -159,7 +160,7 @@ class ObjReader {
     Mesh& mesh = model.meshes[0];
     faces_.fill(mesh, model, data_);  // streams first: they free what they were made from
     set_positions(mesh, data_.positions);
-    std::vector<Vec3d>().swap(data_.positions);
+    free_memory(data_.positions);
     materials_.fill(model);
     for (const auto& [key, count] : ignored_) {
       model.warnings.push_back(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lodestone/base/memory.h"
 #include "lodestone/io/obj_faces_detail.h"
 #include "lodestone/io/read_detail.h"
 
@@ -153,8 +154,8 @@ void ObjFaces::fill(Mesh& mesh, Model& model, ObjData& data) {
     presence(&Presence::with_normal, &Presence::without_normal, "normal", stream);
     mesh.attributes.push_back(std::move(stream));
   }
-  std::vector<Vec3f>().swap(data.normals);
-  std::vector<std::uint32_t>().swap(table_.key_b);
+  free_memory(data.normals);
+  free_memory(table_.key_b);
   if (used(&Presence::with_uv)) {
     AttributeStream stream = make_stream("TEXCOORD_0", Semantic::uv, 2, ComponentType::float32, false, wedges);
     auto& values = std::get<std::vector<float>>(stream.values);
@@ -166,12 +167,12 @@ void ObjFaces::fill(Mesh& mesh, Model& model, ObjData& data) {
     presence(&Presence::with_uv, &Presence::without_uv, "texture coordinate", stream);
     mesh.attributes.push_back(std::move(stream));
   }
-  std::vector<Vec2f>().swap(data.uvs);
-  std::vector<std::uint32_t>().swap(table_.key_a);
+  free_memory(data.uvs);
+  free_memory(table_.key_a);
   if (!data.colors.empty()) {
     mesh.attributes.push_back(color_stream(data, table_.wedge_vertex, wedges));
-    std::vector<float>().swap(data.colors);
-    std::vector<std::uint8_t>().swap(data.color_parts);
+    free_memory(data.colors);
+    free_memory(data.color_parts);
   }
   mesh.wedge_vertex = std::move(table_.wedge_vertex);
   table_ = {};

@@ -1,6 +1,6 @@
 // Method   area-weighted stratified samples and all vertices, each to its closest point on the other surface; then the
-//          maximum is bounded from above (hausdorff.cpp)
-// Cost     O((samples + vertices) log triangles); neighbouring queries hand each other a hint
+//          maximum is bounded from above (maximum_bound.cpp)
+// Cost     O((samples + vertices) log triangles); queries of neighbouring points share their work (closest_batch.cpp)
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,9 +1,10 @@
 // Method   from a triangle of the other surface on, across all sides that cross the piece in projection. If every one
 // of
-//          them faces the same way and no such side is open, the projection of the patch is a covering of the piece:
-//          near any point of the patch it is one to one, so the part of the piece that is covered is open and closed in
-//          it. Hence every point of the piece has a partner straight above or below, and the greatest such height,
-//          which lies at a corner of the patch's triangles clipped to the piece, bounds the distance.
+//          them faces the same way, no such side is open and neighbours walk their common side in opposite directions,
+//          the projection of the patch is a covering of the piece: near any point of the patch it is one to one, so the
+//          part of the piece that is covered is open and closed in it. Hence every point of the piece has a partner
+//          straight above or below, and the greatest such height, which lies at a corner of the patch's triangles
+//          clipped to the piece, bounds the distance.
 // Cost     O(triangles of the patch)
 #include "lodestone/measure/graph_bound_detail.h"
 
@@ -48,13 +49,10 @@ double GraphBound::operator()(const std::array<Vec3d, 3>& corners, std::span<con
   for (const std::uint32_t first : start) {
     patch_.assign(1, first);
     facing_ = highest_ = 0;
-    bool graph = true;
-    for (std::size_t i = 0; i < patch_.size() && graph; ++i) {
-      graph = visit(patch_[i]) && patch_.size() <= kMostTriangles && highest_ <= enough;
-      if (i == 0 && facing_ == 0) break;  // beside the piece
+    for (std::size_t i = 0; i < patch_.size(); ++i) {
+      if (!visit(patch_[i]) || patch_.size() > kMostTriangles || highest_ > enough) return kInfinity;
     }
-    if (!graph) return kInfinity;
-    if (facing_ != 0) return highest_;
+    if (facing_ != 0) return highest_;  // else `first` lies beside the piece
   }
   return kInfinity;
 }
@@ -96,7 +94,7 @@ bool GraphBound::visit(std::uint32_t triangle) {
     if (next == kNone) return false;
     if (std::find(patch_.begin(), patch_.end(), next) == patch_.end()) patch_.push_back(next);
   }
-  // Twice the projected area, and the piece's own corners where they lie under the triangle.
+  // Twice the projected area (of either sign), and the piece's own corners where they lie under the triangle.
   const double ux = flat[1].x - flat[0].x, uy = flat[1].y - flat[0].y, vx = flat[2].x - flat[0].x,
                vy = flat[2].y - flat[0].y;
   const double area = ux * vy - vx * uy;

@@ -37,7 +37,8 @@ class GraphBound {
   };
   std::array<Flat, 3> piece_;
   std::array<Line, 3> lines_;
-  double facing_ = 0, highest_ = 0;
+  double facing_ = 0;   // projected area of a triangle of the patch, for its sign; 0: none lies over the piece so far
+  double highest_ = 0;  // largest height so far, either way
   std::vector<std::uint32_t> patch_;
 };
 

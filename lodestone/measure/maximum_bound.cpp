@@ -1,7 +1,9 @@
-// Method   branch and bound over the triangles of the first surface. Distance to one triangle is a convex function, so
-// over a polygon it is largest at a corner: a piece whose corners have the same closest triangle is bounded
-//          exactly, one whose corners have two or three is cut where those are equally far, and each part is bounded by
-//          its own. A piece whose bound stays too high is halved at its longest side.
+// Method   branch and bound over the triangles of the first surface. A triangle over which the other surface lies like
+// a
+//          graph is bounded at once (graph_bound.cpp). Else by pieces: the distance to one triangle is a convex
+//          function, so over a polygon it is largest at a corner. A piece whose corners have the same closest triangle
+//          is bounded by its corners, one whose corners have two or three is cut where those are equally far, and each
+//          part is bounded by its own. A piece whose bound stays too high is halved at its longest side.
 // Cost     O(triangles) plus one closest-point query a halving; most triangles need none
 #include <algorithm>
 #include <array>
@@ -17,10 +19,9 @@ namespace lodestone::measure::detail {
 
 namespace {
 
-constexpr std::size_t kChunk = 4096;    // triangles that are searched together, by one thread
-constexpr double kLeast = 0.15;         // of a side: where a cut may lie
-constexpr std::uint64_t kHopeless = 1;  // pieces a query left
-constexpr int kSteps = 6;               // towards the point between two triangles
+constexpr std::size_t kChunk = 4096;  // triangles that are searched together, by one thread
+constexpr double kLeast = 0.15;       // of a side: where a cut may lie
+constexpr int kSteps = 6;             // towards the point between two triangles
 
 struct Corner {
   Vec3d at;
@@ -61,8 +62,8 @@ class Search {
 
   MaximumBound run(std::uint64_t queries, const Task& task) {
     for (; !heap_.empty() && heap_.front().upper > limit(); --queries) {
-      // No use to go on for long where most pieces would still be left at the end.
-      if (heap_.size() > kHopeless * queries) queries -= queries / 64;
+      // More pieces than queries: the goal is out of reach. A few more still find a larger maximum, not all.
+      if (heap_.size() > queries) queries -= queries / 64;
       if (queries == 0 || task.cancelled()) return {best_, heap_.front().upper};
       std::pop_heap(heap_.begin(), heap_.end(), is_lower);
       const Piece piece = heap_.back();

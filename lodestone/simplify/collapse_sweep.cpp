@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodestone/base/memory.h"
 #include "lodestone/simplify/collapse_sweep_detail.h"
 
 namespace lodestone::simplify::detail {
@@ -81,8 +82,7 @@ void Sweeper::run(const Task& task) {
       try_collapse(queue_[entry]);
     }
   }
-  queue_ = {};  // what is kept until all have swept is the record alone
-  queue_next_ = bin_head_ = bin_tail_ = {};
+  free_memory(queue_, queue_next_, bin_head_, bin_tail_);  // what is kept until all have swept is the record alone
   steps_.shrink_to_fit();
   merges_.shrink_to_fit();
 }

@@ -3,6 +3,7 @@
 // 1999 (link condition) Cost     O(n log n) time: each pass is linear and removes a fixed share of what is left Steps
 // working mesh -> { stars, quadrics, candidates, sort, sweep, compact } until a target -> record -> replay
 #include "lodestone/simplify/edge_collapse.h"
+#include "lodestone/base/memory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -169,19 +170,10 @@ LockCounts count_locks(const State& state) {
 
 // What the record needs no more: the most of the memory of a run, kept at the size that it began with.
 void release_mesh(State& state) {
-  state.positions = {};
-  state.drift = {};
-  state.triangles = state.wedges = {};
-  state.normals = {};
-  state.first_normals = {};
-  state.quadrics = {};
-  state.notes = {};
-  state.classes = {};
-  state.stars = {};
+  free_memory(state.positions, state.drift, state.triangles, state.wedges, state.normals, state.first_normals,
+              state.quadrics, state.notes, state.classes, state.stars, state.wedge_normals, state.weights,
+              state.star_memory, state.groups, state.original, state.chart);
   state.attributes = {};
-  state.wedge_normals = {};
-  state.weights = {};
-  state.star_memory = state.groups = state.original = state.chart = {};
 }
 
 }  // namespace

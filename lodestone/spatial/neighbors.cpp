@@ -10,6 +10,7 @@ struct Side {
   std::uint32_t higher;  // the other vertex
   std::uint32_t triangle;
   std::uint32_t side;
+  bool upwards;  // walked from the lower vertex to the higher
 };
 
 }  // namespace
@@ -26,7 +27,7 @@ std::vector<std::array<std::uint32_t, 3>> triangle_neighbors(const Surface& surf
       if (!is_proper(v)) continue;
       for (std::uint32_t k = 0; k < 3; ++k) {
         const auto [low, high] = std::minmax(v[k], v[(k + 1) % 3]);
-        take(low, Side{high, t, k});
+        take(low, Side{high, t, k, v[k] == low});
       }
     }
   };
@@ -45,7 +46,7 @@ std::vector<std::array<std::uint32_t, 3>> triangle_neighbors(const Surface& surf
     for (auto i = begin; i != end;) {
       auto j = i;
       while (j != end && j->higher == i->higher) ++j;
-      if (j - i == 2) {
+      if (j - i == 2 && i[0].upwards != i[1].upwards) {
         neighbors[i->triangle][i->side] = i[1].triangle;
         neighbors[i[1].triangle][i[1].side] = i->triangle;
       }

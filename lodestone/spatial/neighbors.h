@@ -9,8 +9,9 @@
 
 namespace lodestone::spatial {
 
-/// For each triangle the one across its side k (from corner k to corner k + 1); kNone where there is none or more than
-/// one, and at all sides of a triangle that names a vertex twice. O(n), 12 bytes a triangle.
+/// For each triangle the one across its side k (from corner k to corner k + 1), which walks that side the other way.
+/// kNone where there is none, more than one, or one that walks it the same way (the surface is not consistently
+/// oriented there), and at all sides of a triangle that names a vertex twice. O(n), 12 bytes a triangle.
 std::vector<std::array<std::uint32_t, 3>> triangle_neighbors(const Surface& surface);
 
 }  // namespace lodestone::spatial

@@ -81,6 +81,20 @@ TEST(GraphBound, says_nothing_where_the_surface_folds_or_stands_up) {
   EXPECT_EQ(wrong, 0U);
 }
 
+// Two large triangles that lie on each other left of x = 0.5, where they are joined. Both are wound the same way, so
+// that both seem to face alike; and yet the piece is bare right of that.
+TEST(GraphBound, says_nothing_where_a_fold_is_wound_as_if_it_were_none) {
+  const Mesh mesh =
+      test::make_mesh({{0.5F, -5, 0}, {0.5F, 5, 0}, {-5, 0, 0}, {-5, 0.1F, 0.01F}}, {{0, 1, 2}, {0, 1, 3}});
+  const auto surface = spatial::flatten(make_model(mesh));
+  ASSERT_TRUE(surface);
+  const Neighbors neighbors = spatial::triangle_neighbors(*surface);
+  for (const std::uint32_t t : {0U, 1U}) {
+    const std::uint32_t start[] = {t};
+    EXPECT_EQ(GraphBound(*surface, neighbors)(kPiece, start, kAny), kAny) << t;
+  }
+}
+
 TEST(GraphBound, degenerate_pieces_and_distant_patches) {
   const spatial::Surface flat = sheet(4, [](double, double) { return 0.3; });
   const Neighbors neighbors = spatial::triangle_neighbors(flat);

@@ -34,5 +34,20 @@ TEST(Neighbors, closed_meshes_have_three_and_fans_of_three_none) {
     EXPECT_EQ(std::count(n.begin(), n.end(), kNone), 3);
 }
 
+// Where both walk their side the same way the surface has no side to be on.
+TEST(Neighbors, turned_triangles_have_none_across_the_turn) {
+  const Mesh same = test::make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}});
+  const Mesh turned = test::make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {3, 1, 2}});
+  const auto joined = [](const Mesh& mesh) {
+    std::size_t count = 0;
+    for (const auto& n : triangle_neighbors(*flatten(make_model(mesh)))) {
+      count += static_cast<std::size_t>(3 - std::count(n.begin(), n.end(), kNone));
+    }
+    return count;
+  };
+  EXPECT_EQ(joined(same), 2U);
+  EXPECT_EQ(joined(turned), 0U);
+}
+
 }  // namespace
 }  // namespace lodestone::spatial
