@@ -12,12 +12,15 @@
 #include "app/verbs.h"
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
+#include "lodestone/io/image_decode.h"
 
 namespace lodestone::app {
 namespace fs = std::filesystem;
 namespace {
 
-void add_levels(BuildReport& report, const Ladder& ladder, const io::WriteReport& written, const BuildPlan& plan) {
+void add_levels(BuildReport& report, const chain::LadderResult& result, const io::WriteReport& written,
+                const BuildPlan& plan) {
+  const Ladder& ladder = result.ladder;
   const bool pruned = plan.influence.influence.vanishes();
   for (std::size_t i = 0; i < ladder.levels.size(); ++i) {
     const Level& level = ladder.levels[i];
@@ -26,6 +29,7 @@ void add_levels(BuildReport& report, const Ladder& ladder, const io::WriteReport
     row.triangles = level.triangles;
     if (pruned) row.vanished_parts = level.vanished_parts;
     row.error = level.error;
+    if (!result.images.empty()) row.image = result.images[i];
     row.switch_distance = measure::switch_distance(level.error.error, 1, plan.view);
     row.bytes = written.level_bytes[i];
     row.file = written.files[i].string();
@@ -55,6 +59,9 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   if (!options) return fail(options.error());
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
   notes.insert(notes.end(), warnings.begin(), warnings.end());
+  if (plan.image_error) {
+    if (Result<void> decoded = io::decode_base_colors(*model, notes, task); !decoded) return fail(decoded.error());
+  }
   for (const std::string& note : notes) console.note(fmt::format("{}: {}", report.input, note));
   Result<chain::LadderResult> result =
       chain::build_ladder(std::move(*model), *options, task.part(0.8, "making levels"));
@@ -70,7 +77,7 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   if (!written) return fail(written.error());
   for (const fs::path& file : written->files) console.wrote(file.string());
   report.write_seconds = watch.lap();
-  add_levels(report, result->ladder, *written, plan);
+  add_levels(report, *result, *written, plan);
   for (const std::string& warning : written->warnings) {
     console.note(fmt::format("{}: {}", job.output.string(), warning));
     report.warnings.push_back(warning);
@@ -91,6 +98,13 @@ Result<BuildReport> build_within_memory(const BuildJob& job, const BuildPlan& pl
   }
 }
 
+// Of shading and colours the figure that is worse.
+void add_cells(std::vector<std::string>& row, const measure::ImageDeviation& image) {
+  row.push_back(percent(image.silhouette_mean));
+  row.push_back(fmt::format("{:.1f} dB", std::min(image.shading_psnr, image.color_psnr)));
+  row.push_back(fmt::format("{:.4f}", std::min(image.shading_ssim, image.color_ssim)));
+}
+
 std::string table_of(const BuildReport& report, const BuildPlan& plan) {
   const std::string unit = report.unit.empty() ? "" : " (" + report.unit + ")";
   Table table;
@@ -100,6 +114,10 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
   table.add_column("error" + unit);
   table.add_column("relative");
   table.add_column("1 px from" + unit);
+  const bool pictures = report.levels.front().image.has_value();
+  if (pictures) {
+    for (const char* title : {"silhouette", "PSNR", "SSIM"}) table.add_column(title);
+  }
   for (const char* title : {"bytes", "seconds"}) table.add_column(title);
   bool all_certain = true;
   for (const LevelReport& level : report.levels) {
@@ -107,13 +125,16 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
         static_cast<double>(level.triangles) / static_cast<double>(std::max<std::size_t>(1, report.triangles));
     std::vector<std::string> row{fmt::format("{}", level.level), with_separators(level.triangles), percent(share)};
     if (level.vanished_parts) row.push_back(with_separators(*level.vanished_parts));
-    const bool certain = level.level == 0 || level.error.kind == ErrorKind::bounded;
+    const bool certain = level.error.kind == ErrorKind::bounded;
     all_certain = all_certain && certain;
     for (const std::string& cell :
          {(certain ? "" : "~") + short_number(level.error.error), percent(level.error.relative(level.error.error)),
-          short_number(level.switch_distance), human_bytes(level.bytes), seconds_text(level.seconds)}) {
+          short_number(level.switch_distance)}) {
       row.push_back(cell);
     }
+    if (level.image) add_cells(row, *level.image);
+    row.push_back(human_bytes(level.bytes));
+    row.push_back(seconds_text(level.seconds));
     table.add_row(std::move(row));
   }
   std::string out =
@@ -124,6 +145,7 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
   }
   out += all_certain ? "errors are certified: no point of either surface is farther from the other\n"
                      : "errors are certified, but for those with ~: the largest that was found\n";
+  if (pictures) out += "silhouette, PSNR, SSIM: pictures from 20 sides compared with the original's\n";
   return out + fmt::format(
                    "{} in all, {} s; 1 px from: the distance from which the error is at most a pixel ({} lines, {} "
                    "degrees)\n",

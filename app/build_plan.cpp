@@ -57,6 +57,7 @@ Result<BuildPlan> build_plan(const Arguments& arguments) {
   if (!influence) return fail(influence.error());
   plan.influence = std::move(*influence);
   plan.compression = compression_of(arguments);
+  plan.image_error = arguments.has("--image-error");
   return plan;
 }
 
@@ -75,6 +76,7 @@ Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& 
   if (!influence) return fail(influence.error());
   options.influence = std::move(*influence);
   options.distance = plan.distance;
+  if (plan.image_error) options.image.emplace();
   if (!plan.ratios.empty()) {
     std::vector<std::string> shares;
     for (const double ratio : plan.ratios) shares.push_back(percent(ratio));

@@ -22,6 +22,7 @@ struct BuildPlan {
   LengthRules lengths;
   InfluencePlan influence;
   measure::DistanceOptions distance;
+  bool image_error = false;  ///< --image-error
   io::Compression compression = io::Compression::none;
 };
 

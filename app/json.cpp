@@ -26,12 +26,30 @@ void add_error(Json& json, const LevelError& error) {
   json["samples"] = error.samples;
 }
 
+Json image_json(const measure::ImageDeviation& image) {
+  Json json{{"views", image.views},
+            {"size_px", image.size_px},
+            {"silhouette_mean", image.silhouette_mean},
+            {"silhouette_max", image.silhouette_max},
+            {"screen_max_px", image.screen_max_px},
+            {"shading_psnr", image.shading_psnr},
+            {"shading_ssim", image.shading_ssim},
+            {"color_psnr", nullptr},
+            {"color_ssim", nullptr}};
+  if (image.has_color) {
+    json["color_psnr"] = image.color_psnr;
+    json["color_ssim"] = image.color_ssim;
+  }
+  return json;
+}
+
 Json level_json(const LevelReport& level) {
   Json json;
   json["level"] = level.level;
   json["triangles"] = level.triangles;
   if (level.vanished_parts) json["vanished_parts"] = *level.vanished_parts;
   add_error(json, level.error);
+  if (level.image) json["image"] = image_json(*level.image);
   json["switch_distance"] = level.switch_distance;
   json["bytes"] = level.bytes;
   json["file"] = level.file;
@@ -184,23 +202,6 @@ Json shape_json(const measure::Shape& shape) {
   return json;
 }
 
-Json image_json(const measure::ImageDeviation& image) {
-  Json json{{"views", image.views},
-            {"size_px", image.size_px},
-            {"silhouette_mean", image.silhouette_mean},
-            {"silhouette_max", image.silhouette_max},
-            {"screen_max_px", image.screen_max_px},
-            {"shading_psnr", image.shading_psnr},
-            {"shading_ssim", image.shading_ssim},
-            {"color_psnr", nullptr},
-            {"color_ssim", nullptr}};
-  if (image.has_color) {
-    json["color_psnr"] = image.color_psnr;
-    json["color_ssim"] = image.color_ssim;
-  }
-  return json;
-}
-
 std::string to_json(const MeasureReport& report) {
   const measure::Distance& d = report.distance;
   Json json;
@@ -224,6 +225,12 @@ std::string to_json(const MeasureReport& report) {
   json["shape"] = {{"a", shape_json(report.shape_a)}, {"b", shape_json(report.shape_b)}};
   if (report.image) json["image"] = image_json(*report.image);
   if (report.attributes) json["attributes"] = attributes_json(*report.attributes);
+  if (report.heat) {
+    json["heat"] = {{"file", report.heat->file},
+                    {"range", report.heat->range},
+                    {"largest", report.heat->largest},
+                    {"triangles", report.heat->triangles}};
+  }
   json["seconds"] = report.seconds;
   return text_of(json);
 }

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <optional>
 
+#include "app/heat.h"
 #include "app/input.h"
 #include "app/json.h"
+#include "app/measure_table.h"
 #include "app/shared_options.h"
-#include "app/table.h"
 #include "app/text.h"
 #include "app/verbs.h"
 #include "lodestone/base/stopwatch.h"
@@ -17,95 +18,6 @@
 
 namespace lodestone::app {
 namespace {
-
-std::string table_of(const measure::Attributes& attributes) {
-  Table table;
-  table.add_column("attribute", Table::Align::left);
-  for (const char* title : {"mean", "rms", "median", "95 %", "max", "compared"}) table.add_column(title);
-  const auto row = [&](const std::string& name, const measure::Deviation& d) {
-    table.add_row({name, short_number(d.mean), short_number(d.rms), short_number(d.median),
-                   short_number(d.percentile_95), short_number(d.max), percent(d.share)});
-  };
-  row("normals (deg)", attributes.normal.both);
-  for (const measure::UvFigure& uv : attributes.uv) {
-    const measure::Deviation& d = uv.distance.both;
-    row(fmt::format("UV set {}", uv.set), d);
-    table.add_row({"  of its diagonal", percent(uv.relative(d.mean)), percent(uv.relative(d.rms)),
-                   percent(uv.relative(d.median)), percent(uv.relative(d.percentile_95)), percent(uv.relative(d.max)),
-                   ""});
-  }
-  if (attributes.color) row("vertex colours", attributes.color->both);
-  if (attributes.look) row("colours as shown", attributes.look->both);
-  std::string text = "\n" + table.text();
-  for (const std::string& note : attributes.notes) text += fmt::format("\n{}\n", printable(note));
-  return text;
-}
-
-std::string shape_table(const MeasureReport& report) {
-  Table table;
-  table.add_column("shape", Table::Align::left);
-  for (const char* title : {"triangles", "pieces", "closed", "manifold", "genus", "open edges"})
-    table.add_column(title);
-  const std::string& unit = report.unit;
-  table.add_column(unit.empty() ? "area" : "area (" + unit + "^2)");
-  table.add_column(unit.empty() ? "volume" : "volume (" + unit + "^3)");
-  const auto row = [&](const char* name, const measure::Shape& shape) {
-    const Topology& t = shape.topology;
-    table.add_row({name, with_separators(t.triangles), with_separators(t.components), t.closed ? "yes" : "no",
-                   t.manifold ? "yes" : "no", shape.genus ? fmt::format("{}", *shape.genus) : "-",
-                   with_separators(t.boundary_edges), short_number(shape.area),
-                   t.closed ? short_number(shape.volume) : "-"});
-  };
-  row("A", report.shape_a);
-  row("B", report.shape_b);
-  const auto kept = [](double a, double b) { return a != 0 ? percent(b / a) : std::string("-"); };
-  const bool closed = report.shape_a.topology.closed && report.shape_b.topology.closed;
-  table.add_row({"B of A",
-                 kept(static_cast<double>(report.shape_a.topology.triangles),
-                      static_cast<double>(report.shape_b.topology.triangles)),
-                 "", "", "", "", "", kept(report.shape_a.area, report.shape_b.area),
-                 closed ? kept(report.shape_a.volume, report.shape_b.volume) : "-"});
-  return "\n" + table.text();
-}
-
-std::string table_of(const measure::ImageDeviation& image) {
-  Table table;
-  table.add_column("pictures", Table::Align::left);
-  for (const char* title : {"silhouette, mean", "worst", "farthest", "PSNR", "SSIM"}) table.add_column(title);
-  const auto row = [&](const char* name, bool first, double psnr, double ssim) {
-    table.add_row({name, first ? percent(image.silhouette_mean) : "", first ? percent(image.silhouette_max) : "",
-                   first ? fmt::format("{:.1f} px", image.screen_max_px) : "", fmt::format("{:.1f} dB", psnr),
-                   fmt::format("{:.4f}", ssim)});
-  };
-  row("shading", true, image.shading_psnr, image.shading_ssim);
-  if (image.has_color) row("colours", false, image.color_psnr, image.color_ssim);
-  return fmt::format("\n{}\n{} views, {} x {} pixels\n", table.text(), image.views, image.size_px, image.size_px);
-}
-
-std::string table_of(const MeasureReport& report) {
-  const measure::Distance& d = report.distance;
-  Table table;
-  table.add_column(report.unit.empty() ? "distance" : "distance (" + report.unit + ")", Table::Align::left);
-  for (const char* title : {"max", "found", "at most", "mean", "median", "95 %", "rms", "normals"})
-    table.add_column(title);
-  const auto degrees = [](double value) { return fmt::format("{:.2f} deg", value); };
-  const auto row = [&](const char* name, const measure::DirectedDistance& one) {
-    table.add_row({name, short_number(one.sampled_max), short_number(one.max), short_number(one.bound),
-                   short_number(one.mean), short_number(one.median), short_number(one.percentile_95),
-                   short_number(one.rms), degrees(one.normal_degrees)});
-  };
-  row("A to B", d.forward);
-  row("B to A", d.backward);
-  table.add_row({"both", short_number(d.sampled_max), short_number(d.max), short_number(d.bound), short_number(d.mean),
-                 "", "", short_number(d.rms), degrees(d.normal_degrees)});
-  table.add_row({"of the diagonal", percent(d.relative(d.sampled_max)), percent(d.relative(d.max)),
-                 percent(d.relative(d.bound)), percent(d.relative(d.mean)), "", "", percent(d.relative(d.rms)), ""});
-  const std::string attributes = report.attributes ? table_of(*report.attributes) : "";
-  const std::string image = report.image ? table_of(*report.image) : "";
-  return table.text() + shape_table(report) + attributes + image +
-         fmt::format("\n{} samples a direction, diagonal of A {}, {} s\n", with_separators(d.samples),
-                     short_number(d.diagonal), seconds_text(report.seconds));
-}
 
 // The options of the second table; nothing without --attributes.
 Result<std::optional<measure::AttributeOptions>> attribute_options(const Arguments& arguments,
@@ -182,6 +94,7 @@ struct MeasurePlan {
   std::vector<LengthArgument> bounded;  // one, or none without --bounded
   std::optional<measure::AttributeOptions> attributes;
   std::optional<measure::ImageOptions> image;
+  std::string heat;  // file to write, empty without --heat
 };
 
 Result<MeasurePlan> plan_of(const Arguments& arguments) {
@@ -204,14 +117,17 @@ Result<MeasurePlan> plan_of(const Arguments& arguments) {
   const auto image = image_options(arguments);
   if (!image) return fail(image.error());
   plan.image = *image;
+  if (arguments.has("--heat")) {
+    plan.heat = arguments.text("--heat");
+    if (Result<void> checked = check_heat_output(plan.heat, arguments.inputs); !checked) return fail(checked.error());
+  }
   return plan;
 }
 
 // Fills in all figures. Each kind of them has a share of the progress.
-Result<void> measure_models(MeasureReport& report, Model& a, Model& b, const MeasurePlan& plan,
-                            const Console& console) {
+Result<void> measure_models(MeasureReport& report, Model& a, Model& b, const MeasurePlan& plan, Console& console) {
   const Task task = console.task().part(0.7);
-  const double extras = (plan.attributes ? 0.4 : 0) + (plan.image ? 0.2 : 0);
+  const double extras = (plan.attributes ? 0.4 : 0) + (plan.image ? 0.2 : 0) + (plan.heat.empty() ? 0 : 0.2);
   const Result<measure::Distance> distance =
       measure_distance(a, b, plan.distance, plan.bounded, task.part(0.95 - extras, "measuring"));
   if (!distance) return fail(distance.error());
@@ -235,6 +151,11 @@ Result<void> measure_models(MeasureReport& report, Model& a, Model& b, const Mea
     if (!found) return fail(found.error());
     report.image = *found;
   }
+  if (!plan.heat.empty()) {
+    const Result<HeatReport> heat = write_heat(a, b, plan.heat, console, task.part(0.2, "colouring"));
+    if (!heat) return fail(heat.error());
+    report.heat = *heat;
+  }
   return {};
 }
 
@@ -253,6 +174,11 @@ Result<ExitCode> run_measure(const Arguments& arguments, Console& console) {
   if (!b) return fail(b.error());
   apply_unit(*a, plan->lengths);
   report.unit = unit_name(a->meters_per_unit);
+  if (!plan->heat.empty()) {
+    for (const Model* model : {&*a, &*b}) {
+      if (const Result<void> kept = io::check_replaced(*model, plan->heat); !kept) return fail(kept.error());
+    }
+  }
   if (const Result<void> measured = measure_models(report, *a, *b, *plan, console); !measured) {
     return fail(measured.error());
   }

@@ -22,7 +22,8 @@ struct LevelReport {
   std::size_t triangles = 0;
   std::optional<std::size_t> vanished_parts;  ///< drawn pieces of the input that have nothing left here; with --prune
   LevelError error;
-  double switch_distance = 0;  ///< model units
+  std::optional<measure::ImageDeviation> image;  ///< with --image-error
+  double switch_distance = 0;                    ///< model units
   std::uint64_t bytes = 0;
   std::string file;
   double seconds = 0;
@@ -54,12 +55,21 @@ struct SimplifyReport {
   std::vector<std::string> warnings;
 };
 
+/// A surface coloured by its distance.
+struct HeatReport {
+  std::string file;
+  double range = 0, largest = 0;  ///< distance of the last colour, and of the farthest vertex
+  std::uint64_t drawn = 0;        ///< triangles of A,
+  std::uint64_t triangles = 0;    ///< and of the file, where large ones are split
+};
+
 struct MeasureReport {
   std::string a, b, unit;
   measure::Distance distance;
   measure::Shape shape_a, shape_b;
   std::optional<measure::Attributes> attributes;  ///< with --attributes
   std::optional<measure::ImageDeviation> image;   ///< with --image
+  std::optional<HeatReport> heat;                 ///< with --heat
   double seconds = 0;
 };
 

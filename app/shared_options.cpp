@@ -125,6 +125,18 @@ OptionGroup measuring_group(std::uint64_t samples) {
             Completion::none}}};
 }
 
+OptionGroup with_image_error(OptionGroup group) {
+  group.options.push_back({"--image-error",
+                           "",
+                           "",
+                           "",
+                           "",
+                           "also compare pictures of each level with the original's, from 20 sides",
+                           {},
+                           Completion::none});
+  return group;
+}
+
 OptionGroup with_bounded(OptionGroup group) {
   group.options.push_back({"--bounded",
                            "",
@@ -148,7 +160,15 @@ OptionGroup image_group() {
         "4, 6, 8, 12 or 20",
         "pictures to compare; needs --image",
         {},
-        Completion::none}}};
+        Completion::none},
+       {"--heat",
+        "",
+        "FILE",
+        "",
+        "",
+        "write A coloured by its distance to B, with the distance at each vertex as _ERROR (.glb, .gltf or .ply)",
+        {},
+        Completion::file}}};
 }
 
 OptionGroup attribute_group() {

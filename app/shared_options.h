@@ -19,15 +19,14 @@ OptionGroup view_group();           ///< --height, --fov
 OptionGroup single_target_group();  ///< --ratio, --triangles, --error (simplify)
 OptionGroup length_group();         ///< --unit, --absolute
 OptionGroup unit_group();           ///< --unit
-OptionGroup measuring_group(std::uint64_t samples);
-/// With --bounded.
-OptionGroup with_bounded(OptionGroup group);  ///< --samples, --seed
-OptionGroup attribute_group();
-/// --image, --views.
-OptionGroup image_group();                ///< --attributes, --uv-set
-OptionGroup output_group(bool compress);  ///< -o, --compress, --json
-OptionGroup result_group();               ///< --json alone
-OptionGroup general_group();              ///< --threads, --quiet, --verbose, --help
+OptionGroup measuring_group(std::uint64_t samples);  ///< --samples, --seed
+OptionGroup with_bounded(OptionGroup group);         ///< and --bounded (measure)
+OptionGroup with_image_error(OptionGroup group);     ///< and --image-error (build)
+OptionGroup attribute_group();                       ///< --attributes, --uv-set
+OptionGroup image_group();                           ///< --image, --views, --heat
+OptionGroup output_group(bool compress);             ///< -o, --compress, --json
+OptionGroup result_group();                          ///< --json alone
+OptionGroup general_group();                         ///< --threads, --quiet, --verbose, --help
 
 /// More levels than these are no ladder but a slip of the keyboard.
 inline constexpr std::uint64_t kMostLevels = 32;

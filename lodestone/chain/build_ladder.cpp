@@ -165,6 +165,7 @@ Level original_level(const Model& original, double diagonal) {
   level.triangles = drawn_triangles(original);
   level.method = "original";
   level.error.diagonal = diagonal;
+  level.error.kind = ErrorKind::bounded;  // it is the original itself
   return level;
 }
 
@@ -225,6 +226,21 @@ Result<void> add_error_levels(LadderResult& result, const CollapsePlan& plan, co
   return {};
 }
 
+Result<void> compare_pictures(LadderResult& result, const measure::ImageOptions& options, const Task& task) {
+  const Stopwatch watch;
+  const auto reference = measure::ImageReference::create(result.ladder.original, options, task.part(0.2));
+  if (!reference) return fail(reference.error());
+  const std::size_t levels = result.ladder.levels.size();
+  for (std::size_t i = 0; i < levels; ++i) {
+    const Task part = task.part(0.8 / static_cast<double>(levels));
+    const auto deviation = reference->deviation_of(result.ladder.model(i), part);
+    if (!deviation) return fail(deviation.error());
+    result.images.push_back(*deviation);
+  }
+  result.measure_seconds += watch.total();
+  return {};
+}
+
 Result<void> check_drawn(const Model& original) {
   if (drawn_triangles(original) > 0) return {};
   return fail(ErrorCode::empty, "the model draws no triangle", {}, "is a scene with meshes in the file?");
@@ -251,11 +267,15 @@ Result<LadderResult> build_ladder(Model original, const LadderOptions& options, 
   if (!reference) return fail(reference.error());
   result.measure_seconds = preparing.total();
   result.ladder.levels.push_back(original_level(model, reference->diagonal()));
-  const Task measuring = task.part(0.55, "measuring");
+  const Task measuring = task.part(options.image ? 0.4 : 0.55, "measuring");
   const Result<void> added = options.errors.empty()
                                  ? add_count_levels(result, *plan, targets, *reference, options, measuring)
                                  : add_error_levels(result, *plan, *reference, options, measuring);
   if (!added) return fail(added.error());
+  if (options.image) {
+    const Result<void> compared = compare_pictures(result, *options.image, task.part(0.15, "comparing pictures"));
+    if (!compared) return fail(compared.error());
+  }
   return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "lodestone/chain/influence.h"
 #include "lodestone/core/level.h"
 #include "lodestone/measure/distance.h"
+#include "lodestone/measure/image.h"
 #include "lodestone/measure/screen.h"
 #include "lodestone/simplify/edge_collapse.h"
 
@@ -26,6 +28,8 @@ struct LadderOptions {
                                        ///< the coarsest mesh found within it, by bisection over one run's log
   Influence influence;                 ///< where the model matters more, what stays
   measure::DistanceOptions distance;   ///< samples and seed of the measurement
+  /// Compare pictures of each level as well. The original's textures must be decoded (io::decode_base_colors()).
+  std::optional<measure::ImageOptions> image;
 };
 
 /// A level that is not what was asked.
@@ -36,7 +40,8 @@ struct Shortfall {
 
 struct LadderResult {
   Ladder ladder;
-  std::vector<Shortfall> shortfalls;  ///< empty = every target was reached
+  std::vector<Shortfall> shortfalls;            ///< empty = every target was reached
+  std::vector<measure::ImageDeviation> images;  ///< one a level, with LadderOptions::image; else empty
   double simplify_seconds = 0, measure_seconds = 0;
 };
 

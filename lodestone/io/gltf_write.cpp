@@ -13,6 +13,7 @@
 #include <span>
 
 #include "lodestone/base/file.h"
+#include "lodestone/base/text.h"
 #include "lodestone/base/units.h"
 #include "lodestone/io/draco_detail.h"
 #include "lodestone/io/gltf_document.h"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "lodestone/base/file.h"
+#include "lodestone/base/text.h"
 #include "lodestone/io/image_codecs_detail.h"
 #include "lodestone/io/text_reader_detail.h"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "lodestone/base/text.h"
 #include "lodestone/io/image_file_detail.h"
 #include "lodestone/io/text_reader_detail.h"
 

@@ -1,3 +1,4 @@
+#include "lodestone/base/text.h"
 #include "lodestone/io/ply_vertices_detail.h"
 
 #include <fmt/format.h>

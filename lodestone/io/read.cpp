@@ -9,6 +9,7 @@
 #include <span>
 
 #include "lodestone/base/file.h"
+#include "lodestone/base/text.h"
 #include "lodestone/core/validate.h"
 #include "lodestone/io/assimp.h"
 #include "lodestone/io/draco.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "lodestone/base/text.h"
 #include "lodestone/io/polygon.h"
 #include "lodestone/io/position_table_detail.h"
 #include "lodestone/io/read_detail.h"

@@ -54,7 +54,5 @@ bool parse_integer(std::string_view word, std::int64_t& value);
 std::string_view next_word(std::string_view& line);
 /// Without blanks at both ends.
 std::string_view trimmed(std::string_view text);
-/// ASCII letters only.
-std::string lower_case(std::string_view text);
 
 }  // namespace lodestone::io

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "lodestone/base/file.h"
+#include "lodestone/base/text.h"
 #include "lodestone/io/gltf_write.h"
 #include "lodestone/io/obj_write.h"
 #include "lodestone/io/off_write.h"

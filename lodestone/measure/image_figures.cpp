@@ -117,7 +117,8 @@ double sum_of_ssim(std::span<const float> a, std::span<const float> b, std::span
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (counts[i] == 0) continue;
     const float ma = mean_a[i], mb = mean_b[i];
-    const float variance = aa[i] - ma * ma + bb[i] - mb * mb, covariance = ab[i] - ma * mb;
+    // With a = b both are rounded alike, so that the figure is 1.
+    const float variance = (aa[i] - ma * ma) + (bb[i] - mb * mb), covariance = ab[i] - ma * mb;
     sum +=
         static_cast<double>((2 * ma * mb + c1) * (2 * covariance + c2) / ((ma * ma + mb * mb + c1) * (variance + c2)));
   }

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "lodestone/render/tone_detail.h"
+
 namespace lodestone::render {
 
 Vec3f heat_color(float share) {
@@ -20,5 +22,7 @@ Vec3f heat_color(float share) {
   }
   return out;
 }
+
+Vec3f heat_light(float share) { return detail::light_of(heat_color(share)); }
 
 }  // namespace lodestone::render

@@ -10,4 +10,7 @@ namespace lodestone::render {
 /// of its colours, with straight lines between.
 Vec3f heat_color(float share);
 
+/// The same colour as light (linear), to the nearest of sRGB's 256 steps a channel.
+Vec3f heat_light(float share);
+
 }  // namespace lodestone::render

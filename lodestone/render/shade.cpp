@@ -18,14 +18,6 @@ constexpr Vec3f kWire{0.01F, 0.012F, 0.02F};
 
 Vec3f times(Vec3f a, Vec3f b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
-// A colour in sRGB, 0 to 1, as light.
-Vec3f light_of(Vec3f srgb) {
-  const auto light = [](float x) {
-    return Tone::get().light(static_cast<std::uint8_t>(std::clamp(x, 0.0F, 1.0F) * 255 + 0.5F));
-  };
-  return {light(srgb.x), light(srgb.y), light(srgb.z)};
-}
-
 Vec3f normalized_or(Vec3f a, Vec3f other) {
   const float sq = dot(a, a);
   return sq > 1e-12F && sq < 1e12F ? a * (1 / std::sqrt(sq)) : other;
@@ -111,7 +103,7 @@ Vec3f Shader::heat_color(std::uint32_t id, const Fragment& fragment) const {
   const Corners<float>& v = scene_.values[id];
   const float value = fragment.mix(v[0], v[1], v[2]);
   if (!std::isfinite(value)) return kNoValueColor;
-  return light_of(render::heat_color((value - heat_least_) * heat_per_unit_));
+  return heat_light((value - heat_least_) * heat_per_unit_);
 }
 
 Vec3f Shader::with_wires(std::uint32_t id, Vec2f at, Vec3f color) const {

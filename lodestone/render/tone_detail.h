@@ -30,4 +30,12 @@ class Tone {
   std::array<std::uint8_t, kSteps + 1> byte_;
 };
 
+/// A colour in sRGB, 0 to 1, as light: that of the nearest byte.
+inline Vec3f light_of(Vec3f srgb) {
+  const auto light = [](float x) {
+    return Tone::get().light(static_cast<std::uint8_t>(std::clamp(x, 0.0F, 1.0F) * 255 + 0.5F));
+  };
+  return {light(srgb.x), light(srgb.y), light(srgb.z)};
+}
+
 }  // namespace lodestone::render::detail

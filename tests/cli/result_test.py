@@ -76,6 +76,30 @@ class Json(Scratch):
         self.assertIsNone(image["color_psnr"])
         self.assert_error(self.lod("measure", "statue.ply", "a.ply", "--image", "--views", "5", code=2), "4, 6, 8, 12 or 20")
 
+    def test_build_compares_pictures(self):
+        report = self.json("build", "statue.ply", "-o", "p.glb", "--levels", "3", "--image-error")
+        first, *coarser = [level["image"] for level in report["levels"]]
+        self.assertEqual((first["silhouette_mean"], first["shading_psnr"], first["shading_ssim"]), (0, 100, 1))
+        self.assertLess(first["silhouette_mean"], coarser[0]["silhouette_mean"])
+        self.assertLess(coarser[1]["shading_psnr"], coarser[0]["shading_psnr"])
+        plain = self.json("build", "statue.ply", "-o", "q.glb", "--levels", "3")
+        self.assertNotIn("image", plain["levels"][1])
+        self.assertEqual((self.folder / "p.glb").read_bytes(), (self.folder / "q.glb").read_bytes())
+
+    def test_measure_heat(self):
+        self.lod("simplify", "statue.ply", "-o", "a.ply", "--ratio", "10%", "-q")
+        for name in ("heat.glb", "heat.ply"):
+            heat = self.json("measure", "statue.ply", "a.ply", "--samples", "1000", "--heat", name)["heat"]
+            self.assertEqual(heat["file"], name)
+            self.assertTrue(0 < heat["range"] <= heat["largest"])
+            shape = self.json("info", name)
+            self.assertEqual(shape["triangles"], heat["triangles"])
+            self.assertTrue(shape["closed"] and shape["manifold"])
+            self.assertLessEqual({"_ERROR"}, {a["name"] for a in shape["attributes"]})
+        self.lod("render", "heat.glb", "--attribute", "_ERROR", "-o", "heat.png", "-q")
+        for name, code, word in (("heat.obj", 2, ".glb, .gltf or .ply"), ("statue.ply", 2, "input"), ("no/heat.ply", 1, "no/")):
+            self.assert_error(self.lod("measure", "statue.ply", "a.ply", "--heat", name, code=code), word)
+
     def test_measure_attributes(self):
         self.lod("sample", "terrain", "--triangles", "4000", "-o", "terrain.glb")
         self.lod("simplify", "terrain.glb", "-o", "a.glb", "--triangles", "500")

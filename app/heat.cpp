@@ -1,0 +1,44 @@
+#include "app/heat.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "app/input.h"
+#include "app/text.h"
+#include "lodestone/base/text.h"
+#include "lodestone/io/write.h"
+#include "lodestone/measure/heat.h"
+
+namespace lodestone::app {
+namespace {
+
+std::string extension_of(const std::string& path) {
+  return lower_case(std::filesystem::path(path).extension().string());
+}
+
+}  // namespace
+
+Result<void> check_heat_output(const std::string& output, const std::vector<std::string>& inputs) {
+  const std::string extension = extension_of(output);
+  if (extension != ".glb" && extension != ".gltf" && extension != ".ply") {
+    return fail(ErrorCode::bad_argument, "--heat writes numbers and colours a vertex, which this format does not keep",
+                output, "end its name in .glb, .gltf or .ply");
+  }
+  return check_output(output, {inputs.begin(), inputs.end()}, io::Compression::none);
+}
+
+Result<HeatReport> write_heat(const Model& a, const Model& b, const std::string& output, Console& console,
+                              const Task& task) {
+  measure::HeatOptions options;
+  options.linear_colors = extension_of(output) != ".ply";
+  const Result<measure::Heat> heat = measure::heat_map(a, b, options, task.part(0.8));
+  if (!heat) return fail(heat.error());
+  const Result<io::WriteReport> written = io::write_model(heat->model, output, {}, task.part(0.2, "writing"));
+  if (!written) return fail(written.error());
+  console.wrote(output);
+  for (const std::string& warning : written->warnings) console.note(fmt::format("{}: {}", output, warning));
+  return HeatReport{output, heat->range, heat->largest, heat->triangles, drawn_triangles(heat->model)};
+}
+
+}  // namespace lodestone::app

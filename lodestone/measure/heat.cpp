@@ -1,0 +1,197 @@
+#include "lodestone/measure/heat.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "lodestone/base/parallel.h"
+#include "lodestone/measure/split_detail.h"
+#include "lodestone/render/color_map.h"
+#include "lodestone/spatial/bvh.h"
+#include "lodestone/spatial/closest_batch.h"
+#include "lodestone/spatial/surface.h"
+
+namespace lodestone::measure {
+
+namespace {
+
+using detail::Side;
+
+constexpr std::size_t kChunk = 4096;
+constexpr int kMostRounds = 8;  // of splitting: a side becomes 1/256 of what it was
+
+// The surface while it is split, with the distance of each vertex.
+struct Field {
+  std::vector<Vec3d> positions;
+  std::vector<Triangle> triangles;
+  std::vector<double> distance;
+  std::size_t first_new = 0;  // vertices from here on came in the last round
+};
+
+std::vector<double> distances(const spatial::Bvh& to, std::span<const Vec3d> points, const Task& task) {
+  std::vector<double> out(points.size());
+  parallel_for(points.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<spatial::Nearest> closest(end - begin);
+    spatial::ClosestBatch(to).find(points.subspan(begin, end - begin), closest);
+    for (std::size_t i = begin; i < end; ++i) out[i] = std::sqrt(closest[i - begin].distance_sq);
+  });
+  return out;
+}
+
+double largest_of(const std::vector<double>& values) {
+  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
+}
+
+// Sides of triangles that have a new vertex, longer than `shortest`.
+std::vector<Side> new_sides(const Field& field, double shortest, const Task& task) {
+  std::vector<Side> sides;
+  for (const Triangle& t : field.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Side side = detail::side_of(t[k], t[(k + 1) % 3]);
+      if (side.high < field.first_new) continue;
+      if (length(field.positions[side.low] - field.positions[side.high]) > shortest) sides.push_back(side);
+    }
+  }
+  detail::sort_unique(sides, task);
+  return sides;
+}
+
+// Triangles with a new vertex and all sides longer than `shortest`.
+std::vector<std::uint32_t> new_triangles(const Field& field, double shortest) {
+  std::vector<std::uint32_t> out;
+  for (std::size_t i = 0; i < field.triangles.size(); ++i) {
+    const Triangle& t = field.triangles[i];
+    if (std::max({t[0], t[1], t[2]}) < field.first_new) continue;
+    bool is_long = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      is_long = is_long && length(field.positions[t[k]] - field.positions[t[(k + 1) % 3]]) > shortest;
+    }
+    if (is_long) out.push_back(static_cast<std::uint32_t>(i));
+  }
+  return out;
+}
+
+// The sides to be split: those whose middle, and those of triangles whose centre, the corners don't tell.
+std::vector<Side> sides_to_split(const Field& field, const spatial::Bvh& to, double shortest, double tolerance,
+                                 double& largest, const Task& task) {
+  const std::vector<Side> sides = new_sides(field, shortest, task);
+  const std::vector<std::uint32_t> triangles = new_triangles(field, shortest);
+  std::vector<Vec3d> points;
+  points.reserve(sides.size() + triangles.size());
+  for (const Side& side : sides) points.push_back(detail::middle_of(field.positions, side));
+  for (const std::uint32_t t : triangles) {
+    const Triangle& c = field.triangles[t];
+    points.push_back((field.positions[c[0]] + field.positions[c[1]] + field.positions[c[2]]) * (1.0 / 3));
+  }
+  const std::vector<double> found = distances(to, points, task);
+  largest = std::max(largest, largest_of(found));
+
+  std::vector<Side> out;
+  const double most = tolerance * largest;
+  const std::vector<double>& d = field.distance;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (std::abs(found[i] - (d[sides[i].low] + d[sides[i].high]) / 2) > most) out.push_back(sides[i]);
+  }
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Triangle& t = field.triangles[triangles[i]];
+    if (std::abs(found[sides.size() + i] - (d[t[0]] + d[t[1]] + d[t[2]]) / 3) <= most) continue;
+    for (std::size_t k = 0; k < 3; ++k) out.push_back(detail::side_of(t[k], t[(k + 1) % 3]));
+  }
+  detail::sort_unique(out, task);
+  return out;
+}
+
+// Splits until straight lines between the vertices tell the distance.
+void refine(Field& field, const spatial::Bvh& to, double diagonal, const HeatOptions& options, double& largest,
+            const Task& task) {
+  const double shortest = options.shortest_side * diagonal;
+  for (int round = 0; round < kMostRounds && !task.cancelled(); ++round) {
+    const std::vector<Side> sides = sides_to_split(field, to, shortest, options.tolerance, largest, task);
+    // Distances this small are rounding.
+    if (sides.empty() || largest < 1e-9 * diagonal) return;
+    std::vector<Triangle> split = detail::split_sides(field.triangles, sides, field.positions.size());
+    if (split.size() > options.most_triangles) return;
+    field.triangles = std::move(split);
+    field.first_new = field.positions.size();
+    for (const Side& side : sides) field.positions.push_back(detail::middle_of(field.positions, side));
+    const std::vector<double> added =
+        distances(to, std::span<const Vec3d>(field.positions).subspan(field.first_new), task);
+    field.distance.insert(field.distance.end(), added.begin(), added.end());
+  }
+}
+
+// The distance that `share` of the area is nearer than, a triangle taken as its mean.
+double area_percentile(const Field& field, double share, const Task& task) {
+  struct Part {
+    double distance, area;
+  };
+  std::vector<Part> parts(field.triangles.size());
+  double total = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Triangle& t = field.triangles[i];
+    const Vec3d a = field.positions[t[0]], b = field.positions[t[1]], c = field.positions[t[2]];
+    parts[i] = {(field.distance[t[0]] + field.distance[t[1]] + field.distance[t[2]]) / 3,
+                length(cross(b - a, c - a)) / 2};
+    total += parts[i].area;
+  }
+  parallel_sort(parts, task, [](const Part& a, const Part& b) { return a.distance < b.distance; });
+  double below = 0;
+  for (const Part& part : parts) {
+    below += part.area;
+    if (below >= share * total) return part.distance;
+  }
+  return 0;
+}
+
+Mesh mesh_of(Field field, Vec3d offset, double range, bool linear_colors) {
+  Mesh mesh;
+  mesh.offset = offset;
+  const std::size_t n = field.positions.size();
+  AttributeStream error = make_stream("_ERROR", Semantic::generic, 1, ComponentType::float32, false, n);
+  AttributeStream color = make_stream("COLOR_0", Semantic::color, 3, ComponentType::uint8, true, n);
+  auto& errors = std::get<std::vector<float>>(error.values);
+  auto& colors = std::get<std::vector<float>>(color.values);
+  mesh.positions.reserve(n);
+  for (std::size_t v = 0; v < n; ++v) {
+    mesh.positions.push_back(to_float(field.positions[v] - offset));
+    errors[v] = static_cast<float>(field.distance[v]);
+    const float share = range > 0 ? static_cast<float>(field.distance[v] / range) : 0.0F;
+    const Vec3f rgb = linear_colors ? render::heat_light(share) : render::heat_color(share);
+    for (std::size_t k = 0; k < 3; ++k) colors[3 * v + k] = rgb[k];
+  }
+  mesh.triangles = std::move(field.triangles);
+  mesh.attributes.push_back(std::move(error));
+  mesh.attributes.push_back(std::move(color));
+  return mesh;
+}
+
+}  // namespace
+
+Result<Heat> heat_map(const Model& a, const Model& b, const HeatOptions& options, Task task) {
+  Result<spatial::Surface> from = spatial::flatten(a, task.part(0.2));
+  if (!from) return fail(from.error());
+  const Result<spatial::Surface> other = spatial::flatten(b, task.part(0.1));
+  if (!other) return fail(other.error());
+  const spatial::Bvh to(*other, task.part(0.1));
+
+  Heat heat;
+  heat.triangles = from->triangles.size();
+  const double diagonal = from->bounds.diagonal();
+  const Vec3d offset = from->bounds.center();
+  Field field{std::move(from->positions), std::move(from->triangles), {}, 0};
+  field.distance = distances(to, field.positions, task);
+  double largest = largest_of(field.distance);
+  refine(field, to, diagonal, options, largest, task);
+  if (task.cancelled()) return cancelled_error("heat map");
+  heat.largest = largest_of(field.distance);
+  heat.percentile_99 = area_percentile(field, 0.99, task);
+  heat.range = options.range > 0 ? options.range : heat.percentile_99;
+  heat.model = make_model(mesh_of(std::move(field), offset, heat.range, options.linear_colors));
+  heat.model.meters_per_unit = a.meters_per_unit;
+  return heat;
+}
+
+}  // namespace lodestone::measure
