@@ -294,6 +294,27 @@ std::string to_json(const RenderReport& report) {
   return text_of(json);
 }
 
+std::string to_json(const SheetReport& report) {
+  Json json;
+  json["levels"] = Json::array();
+  for (const SheetReport::Level& level : report.levels) {
+    json["levels"].push_back({{"input", level.input},
+                              {"level", level.level},
+                              {"triangles", level.triangles},
+                              {"error", level.error},
+                              {"switch_distance", level.switch_distance}});
+  }
+  json["unit"] = unit_or_null(report.unit);
+  json["file"] = report.file;
+  json["bytes"] = report.bytes;
+  json["width"] = report.width;
+  json["height"] = report.height;
+  json["shading"] = report.shading;
+  json["seconds"] = report.seconds;
+  json["warnings"] = report.warnings;
+  return text_of(json);
+}
+
 std::string to_json(const ConvertReport& report) {
   Json json;
   json["input"] = {{"path", report.input}, {"triangles", report.triangles}};

@@ -6,9 +6,10 @@
 #include <filesystem>
 #include <span>
 
-#include "app/input.h"
 #include "app/json.h"
+#include "app/picture.h"
 #include "app/render_options.h"
+#include "app/render_sheet.h"
 #include "app/text.h"
 #include "app/verbs.h"
 #include "lodestone/base/file.h"
@@ -28,24 +29,6 @@ struct Request {
   render::RenderOptions options;
   std::size_t level = 0;
 };
-
-Result<std::string> output_of(const Arguments& arguments) {
-  const std::string& input = arguments.inputs.front();
-  if (!arguments.has("--output")) {
-    return fail(ErrorCode::bad_argument, "render needs an output", {},
-                fmt::format("add one, such as -o {}.png", std::filesystem::path(input).stem().string()));
-  }
-  const std::string output = arguments.text("--output");
-  const std::string extension = std::filesystem::path(output).extension().string();
-  if (!io::is_picture_extension(extension)) {
-    return fail(ErrorCode::bad_argument,
-                extension.empty() ? "has no ending that names a format of pictures"
-                                  : fmt::format("'{}' is no format of pictures that we write", extension),
-                output, "end it in .png or .webp");
-  }
-  if (const Result<void> checked = check_place(output, {input}); !checked) return fail(checked.error());
-  return output;
-}
 
 // Numbers are shown by heat alone, and heat shows numbers.
 Result<void> read_heat(const Arguments& arguments, Request& request) {
@@ -74,7 +57,7 @@ Result<Request> request_of(const Arguments& arguments) {
   if (!options) return fail(options.error());
   const Result<std::uint64_t> level = arguments.count("--level", 0, 1024);
   if (!level) return fail(level.error());
-  const Result<std::string> output = output_of(arguments);
+  const Result<std::string> output = picture_output(arguments);
   if (!output) return fail(output.error());
   request.camera = *camera;
   request.options = *options;
@@ -83,37 +66,15 @@ Result<Request> request_of(const Arguments& arguments) {
   return request;
 }
 
-Result<Model> read_level(const Request& request, const Console& console, const Task& task) {
-  if (request.level > 0) {
-    const std::uint64_t levels = levels_in_file(request.input);
-    if (levels == 1) {
-      return fail(ErrorCode::bad_argument, "--level is for files with levels (MSFT_lod), this one has none",
-                  request.input, "make them with 'lod build'");
-    }
-    if (request.level >= levels) {
-      return fail(ErrorCode::bad_argument,
-                  fmt::format("has no level {}, its levels are 0 to {}", request.level, levels - 1), request.input);
-    }
+// What only --sheet knows.
+Result<void> check_one_picture(const Arguments& arguments) {
+  if (arguments.inputs.size() > 1) {
+    return fail(ErrorCode::bad_argument, fmt::format("render draws one model, but got {}", arguments.inputs.size()), {},
+                "add --sheet to draw them beside each other, as levels of the first");
   }
-  io::ReadOptions options;
-  options.draw_level = request.level;
-  return read_input(request.input, console, task, options);
-}
-
-// The picture must not replace a file of the input. Model::files doesn't name the textures of OBJ and PLY: these show
-// by their bytes.
-Result<void> check_kept(const Model& model, const std::string& output) {
-  if (const Result<void> kept = io::check_replaced(model, output); !kept) return kept;
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(output, ignored)) return {};
-  const Result<std::string> there = read_file(output);
-  if (!there) return fail(there.error());
-  for (const Material& material : model.materials) {
-    if (material.base_color_texture == nullptr) continue;
-    const std::vector<std::byte>& texture = material.base_color_texture->encoded;
-    if (std::ranges::equal(std::as_bytes(std::span(*there)), texture)) {
-      return fail(ErrorCode::cannot_write, "is a texture of the input, which is never overwritten", output,
-                  "choose another name for -o");
+  for (const char* option : {"--height", "--pixels"}) {
+    if (arguments.has(option)) {
+      return fail(ErrorCode::bad_argument, fmt::format("{} needs --sheet", option), {}, "add it");
     }
   }
   return {};
@@ -124,6 +85,8 @@ std::array<double, 3> triple(Vec3d v) { return {v.x, v.y, v.z}; }
 }  // namespace
 
 Result<ExitCode> run_render(const Arguments& arguments, Console& console) {
+  if (arguments.has("--sheet")) return run_sheet(arguments, console);
+  if (const Result<void> one = check_one_picture(arguments); !one) return fail(one.error());
   const Result<Request> asked = request_of(arguments);
   if (!asked) return fail(asked.error());
   const Request& request = *asked;
@@ -133,17 +96,10 @@ Result<ExitCode> run_render(const Arguments& arguments, Console& console) {
   report.level = request.level;
 
   Stopwatch watch;
-  Result<Model> model = read_level(request, console, console.task().part(0.5, "reading"));
+  const Result<Model> model =
+      read_drawn_level(request.input, request.level, report.warnings, console, console.task().part(0.5, "reading"));
   if (!model) return fail(model.error());
-  if (const Result<void> kept = check_kept(*model, request.output); !kept) return fail(kept.error());
-  report.warnings = model->warnings;
-  const auto tell = [&](const std::string& text) {
-    console.note(fmt::format("{}: {}", request.input, text));
-    report.warnings.push_back(text);
-  };
-  std::vector<std::string> undecoded;
-  if (const auto done = io::decode_base_colors(*model, undecoded, console.task()); !done) return fail(done.error());
-  for (const std::string& warning : undecoded) tell(warning);
+  if (const Result<void> kept = check_picture_kept(*model, request.output); !kept) return fail(kept.error());
   report.read_seconds = watch.lap();
 
   render::SceneOptions scene_options;
@@ -158,7 +114,10 @@ Result<ExitCode> run_render(const Arguments& arguments, Console& console) {
   options.shading = request.shading.value_or(render::default_shading(*scene));
   report.shading = name_of(options.shading);
   if (options.shading == render::Shading::textured) {
-    for (const std::string& note : scene->notes()) tell(note);
+    for (const std::string& note : scene->notes()) {
+      console.note(fmt::format("{}: {}", request.input, note));
+      report.warnings.push_back(note);
+    }
   }
   if (options.shading == render::Shading::heat) {
     const render::HeatRange range = options.heat_range.value_or(render::default_heat_range(*scene));

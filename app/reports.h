@@ -112,6 +112,21 @@ struct RenderReport {
   std::vector<std::string> warnings;
 };
 
+/// A contact sheet.
+struct SheetReport {
+  struct Level {
+    std::string input;
+    std::size_t level = 0, triangles = 0;
+    double error = 0, switch_distance = 0;  ///< model units
+  };
+  std::string file, shading, unit;
+  std::vector<Level> levels;
+  std::uint32_t width = 0, height = 0;
+  std::uint64_t bytes = 0;
+  double seconds = 0;
+  std::vector<std::string> warnings;
+};
+
 struct SampleReport {
   std::string sample, file;
   std::size_t triangles = 0, vertices = 0, instances = 0;

@@ -5,6 +5,7 @@
 #include "app/attributes.h"
 #include "app/influence.h"
 #include "app/render_options.h"
+#include "app/render_sheet.h"
 #include "app/shared_options.h"
 #include "app/verbs.h"
 
@@ -71,11 +72,11 @@ VerbSpec measure_spec() {
 VerbSpec render_spec() {
   return {"render",
           "Draws a picture of a model without a display: shaded, textured, as wires, numbers as colours.",
-          one_model(),
-          {camera_group(), look_group(), picture_group(), general_group()},
+          {"INPUT...", 1, kAnyNumber, {}, Completion::file},
+          {camera_group(), look_group(), sheet_group(), picture_group(), general_group()},
           {{"lod render statue.ply -o statue.png", "from the front and a little above, in grey"},
            {"lod render statue.glb --level 1 --wireframe --view iso -o level1.png", "a ladder's level with its edges"},
-           {"lod render tower.glb --angles 30,20 --size 800x600 -o tower.webp", "from 30 degrees right, 20 above"}},
+           {"lod render statue.glb --sheet -o sheet.webp", "all levels of a ladder in one picture, with their errors"}},
           "Views are named by where the eye is, for someone who stands before the model: front is +z with y up, right "
           "is +x. Faces seen from behind are drawn in a dull blue unless their material is double-sided. A numbers' "
           "attribute (--shading heat --attribute NAME) is drawn with a legend.",

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lodestone/render/color_map.h"
-#include "lodestone/render/digits_detail.h"
+#include "lodestone/render/text.h"
 
 namespace lodestone::render::detail {
 

@@ -166,3 +166,40 @@ class Render(Scratch):
     def small_png(self):
         self.lod("render", "statue.ply", "-o", "small.png", "--size", "2x2")
         return (self.folder / "small.png").read_bytes()
+
+
+class Sheet(Scratch):
+    """render --sheet: a whole ladder in one picture."""
+
+    def test_levels_of_a_file_and_files_of_levels(self):
+        built = self.json("build", "statue.ply", "-o", "s.glb", "--levels", "3")["levels"]
+        self.lod("build", "statue.ply", "-o", "s_LOD{level}.ply", "--levels", "3", "-q")
+        sheet = self.json("render", "s.glb", "--sheet", "-o", "a.png", "--size", "80x60")
+        self.assertEqual((sheet["width"], len(sheet["levels"])), (12 + 3 * 92, 3))
+        for drawn, level in zip(sheet["levels"], built):
+            self.assertEqual(drawn["triangles"], level["triangles"])
+            self.assertAlmostEqual(drawn["error"], level["error"], delta=0.02 * level["error"])
+            self.assertAlmostEqual(drawn["switch_distance"], level["switch_distance"], delta=0.02 * level["switch_distance"])
+        self.json("render", *(f"s_LOD{i}.ply" for i in range(3)), "--sheet", "-o", "b.png", "--size", "80x60")
+        again = self.json("render", "s.glb", "--sheet", "-o", "c.png", "--size", "80x60", "--threads", "1")
+        self.assertEqual(again["bytes"], sheet["bytes"])
+        self.assertEqual((self.folder / "a.png").read_bytes(), (self.folder / "c.png").read_bytes())
+        nearer = self.json("render", "s.glb", "--sheet", "-o", "c.png", "--height", "540", "--pixels", "2")
+        self.assertAlmostEqual(nearer["levels"][2]["switch_distance"], sheet["levels"][2]["switch_distance"] / 4, places=6)
+
+    def test_what_it_refuses(self):
+        self.lod("build", "statue.ply", "-o", "s.glb", "--levels", "2", "-q")
+        cases = [
+            (("statue.ply", "--sheet", "-o", "a.png"), "lod build"),
+            (("statue.ply", "statue.ply", "-o", "a.png"), "--sheet"),
+            (("statue.ply", "--height", "500", "-o", "a.png"), "--sheet"),
+            (("s.glb", "--sheet", "--level", "1", "-o", "a.png"), "--level"),
+            (("s.glb", "--sheet", "--eye", "1,1,1", "-o", "a.png"), "--eye"),
+            (("s.glb", "--sheet", "--attribute", "x", "-o", "a.png"), "--attribute"),
+            (("s.glb", "--sheet", "--size", "16000x100", "-o", "a.png"), "smaller"),
+            (("s.glb", "statue.ply", "--sheet", "-o", "s.glb"), ".png or .webp"),
+        ]
+        for words, part in cases:
+            with self.subTest(words):
+                self.assert_error(self.lod("render", *words, code=2), part)
+        self.assertEqual(self.files(), ["s.glb", "statue.ply"])

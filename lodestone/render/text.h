@@ -1,4 +1,4 @@
-// Writing numbers into pictures, with a small font of our own.
+// Writing into pictures, with a small font of our own.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "lodestone/core/pixels.h"
 
-namespace lodestone::render::detail {
+namespace lodestone::render {
 
 inline constexpr std::int32_t kGlyphWidth = 5, kGlyphHeight = 7, kGlyphAdvance = 6;
 
@@ -17,7 +17,7 @@ inline std::int32_t width_of(std::string_view text) {
 }
 
 /// Draws with the upper left corner at (x, y), each dot `scale` pixels wide; what lies off the picture is left out.
-/// Knows digits, signs, and the letters of numbers and units; a hollow box stands for any other.
+/// Knows digits, small letters, and some signs; a hollow box stands for any other.
 void draw_text(Pixels& pixels, std::string_view text, std::int32_t x, std::int32_t y, std::int32_t scale,
                const std::array<std::uint8_t, 3>& color);
 
@@ -25,4 +25,4 @@ void draw_text(Pixels& pixels, std::string_view text, std::int32_t x, std::int32
 void fill_box(Pixels& pixels, std::int32_t x, std::int32_t y, std::int32_t width, std::int32_t height,
               const std::array<std::uint8_t, 3>& color, std::uint32_t opacity = 255);
 
-}  // namespace lodestone::render::detail
+}  // namespace lodestone::render

@@ -1,0 +1,128 @@
+#include "lodestone/report/contact_sheet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "lodestone/base/units.h"
+#include "lodestone/render/frame.h"
+#include "lodestone/render/text.h"
+
+namespace lodestone::report {
+
+namespace {
+
+constexpr std::uint32_t kGap = 12;      // between cells and around them, pixels
+constexpr std::int32_t kTextScale = 2;  // pixels of a dot
+constexpr std::uint32_t kLine = (render::kGlyphHeight + 4) * kTextScale;
+constexpr std::array<std::uint8_t, 3> kInk{30, 32, 36};
+constexpr std::array<std::uint8_t, 4> kPaper{255, 255, 255, 255};
+
+struct Row {
+  std::uint32_t top;      // of its pictures
+  std::uint32_t caption;  // top of the text below them
+};
+
+Row upper_row(const SheetOptions& options) { return {kGap, kGap + options.picture.height + kGap / 2}; }
+
+Row lower_row(const SheetOptions& options) {
+  const std::uint32_t top = upper_row(options).caption + 2 * kLine + kGap;
+  return {top, top + options.picture.height + kGap / 2};
+}
+
+std::uint32_t left_of(std::size_t column, const SheetOptions& options) {
+  return kGap + static_cast<std::uint32_t>(column) * (options.picture.width + kGap);
+}
+
+Result<void> check(const std::vector<SheetLevel>& levels, const SheetOptions& options) {
+  if (levels.empty()) return fail(ErrorCode::bad_argument, "a sheet needs at least one level");
+  if (options.picture.shading == render::Shading::heat) {
+    return fail(ErrorCode::bad_argument, "a sheet shows no heat", {}, "choose another shading");
+  }
+  const std::uint64_t width = std::uint64_t{levels.size()} * (std::uint64_t{options.picture.width} + kGap) + kGap;
+  const std::uint64_t height = 2 * std::uint64_t{options.picture.height} + 200;
+  if (width <= render::kMostSide && height <= render::kMostSide) return {};
+  return fail(ErrorCode::bad_argument,
+              fmt::format("{} levels of {} x {} pixels make a sheet of {} x {}, {} is the most", levels.size(),
+                          options.picture.width, options.picture.height, width, height, render::kMostSide),
+              {}, "make the pictures smaller");
+}
+
+std::string length_text(double length, const std::string& unit) {
+  return fmt::format("{:.4g}{}{}", length, unit.empty() ? "" : " ", unit);
+}
+
+// As the screen shows the model from `distance`, to the surface of the sphere around the original's box.
+Camera at_distance(const Camera& framed, const render::Scene& original, double error, double distance,
+                   const SheetOptions& options) {
+  Camera camera = framed;
+  const double radius = original.bounds().diagonal() / 2;
+  camera.eye = original.bounds().center() - framed.forward * (radius + distance);
+  camera.near_distance = distance / 2;
+  const double lines = static_cast<double>(options.picture.height);
+  camera.half_height =
+      framed.orthographic ? lines / 2 * error / options.pixels : framed.half_height * lines / options.view.height_px;
+  return camera;
+}
+
+void paste(const Pixels& picture, Pixels& sheet, std::uint32_t left, std::uint32_t top) {
+  for (std::uint32_t y = 0; y < picture.height; ++y) {
+    std::memcpy(sheet.rgba.data() + (std::size_t{top + y} * sheet.width + left) * 4,
+                picture.rgba.data() + std::size_t{y} * picture.width * 4, std::size_t{picture.width} * 4);
+  }
+}
+
+// Cut to the cell, so that no caption runs into the next.
+void write_line(Pixels& sheet, std::string text, std::uint32_t left, std::uint32_t top, const SheetOptions& options) {
+  const std::size_t fits = options.picture.width / static_cast<std::uint32_t>(render::kGlyphAdvance * kTextScale);
+  if (text.size() > fits) text.resize(fits);
+  render::draw_text(sheet, text, static_cast<std::int32_t>(left), static_cast<std::int32_t>(top), kTextScale, kInk);
+}
+
+}  // namespace
+
+SheetSize sheet_size(std::size_t levels, const SheetOptions& options) {
+  return {left_of(levels, options), lower_row(options).caption + 2 * kLine};
+}
+
+Result<Pixels> contact_sheet(const std::vector<SheetLevel>& levels, const SheetOptions& options, Task task) {
+  if (const Result<void> ok = check(levels, options); !ok) return fail(ok.error());
+  const render::Scene& original = levels.front().scene;
+  const double aspect = static_cast<double>(options.picture.width) / options.picture.height;
+  const Camera framed = original.framed(options.angles, aspect, options.lens, options.up);
+  const double diagonal = original.bounds().diagonal();
+  const SheetSize size = sheet_size(levels.size(), options);
+  Pixels sheet{size.width, size.height, std::vector<std::uint8_t>(std::size_t{size.width} * size.height * 4)};
+  for (std::size_t i = 0; i < sheet.rgba.size(); ++i) sheet.rgba[i] = kPaper[i % 4];
+
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const Task part = task.part(1.0 / static_cast<double>(levels.size()));
+    const std::uint32_t left = left_of(i, options);
+    const Result<Pixels> upper = render::render(levels[i].scene, framed, options.picture, part.part(0.5));
+    if (!upper) return fail(upper.error());
+    paste(*upper, sheet, left, upper_row(options).top);
+    const std::uint32_t caption = upper_row(options).caption;
+    write_line(sheet, fmt::format("{}: {} triangles", i, with_separators(levels[i].scene.triangle_count())), left,
+               caption, options);
+    const double share = diagonal > 0 ? levels[i].error / diagonal * 100 : 0;
+    write_line(
+        sheet,
+        i == 0 ? "original" : fmt::format("error {} ({:.3g} %)", length_text(levels[i].error, options.unit), share),
+        left, caption + kLine, options);
+
+    const double error = levels[std::min(std::max<std::size_t>(i, 1), levels.size() - 1)].error;
+    const double distance = measure::switch_distance(error, options.pixels, options.view);
+    if (!(distance > 1e-9 * diagonal)) continue;  // as exact as the original: it never has to be far away
+    const Camera camera = at_distance(framed, original, error, distance, options);
+    const Result<Pixels> lower = render::render(levels[i].scene, camera, options.picture, part.part(0.5));
+    if (!lower) return fail(lower.error());
+    paste(*lower, sheet, left, lower_row(options).top);
+    write_line(sheet, fmt::format("from {} away", length_text(distance, options.unit)), left,
+               lower_row(options).caption, options);
+  }
+  return sheet;
+}
+
+}  // namespace lodestone::report
