@@ -1,7 +1,8 @@
-// Sine and cosine of angles in degrees, the same bits on every machine.
+// Sines and cosines of angles in degrees and back, the same bits on every machine.
 #pragma once
 
 #include <cmath>
+#include <initializer_list>
 
 namespace lodestone {
 
@@ -32,6 +33,21 @@ inline SinCos sin_cos_degrees(double degrees) {
     default:
       return {-c, s};
   }
+}
+
+/// The angle in [0, 180] degrees that has this cosine (cut to [-1, 1]), within 2e-6 degrees: exact at 1 and -1.
+/// Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.46.
+inline double arc_cosine_degrees(double cosine) {
+  constexpr double kDegrees = 180 / 3.14159265358979323846;
+  const double x = std::fabs(cosine);
+  if (!(x < 1)) return cosine > 0 ? 0 : 180;
+  double sum = -0.0012624911;
+  for (const double c :
+       {0.0066700901, -0.0170881256, 0.0308918810, -0.0501743046, 0.0889789874, -0.2145988016, 1.5707963050}) {
+    sum = sum * x + c;
+  }
+  const double degrees = std::sqrt(1 - x) * sum * kDegrees;
+  return cosine < 0 ? 180 - degrees : degrees;
 }
 
 }  // namespace lodestone

@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <span>
 #include <vector>
 
 #include "lodestone/base/parallel.h"
+#include "lodestone/math/angle.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/measure/directed_detail.h"
 #include "lodestone/measure/maximum_bound_detail.h"
@@ -59,8 +59,9 @@ Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const
   });
   std::vector<spatial::Nearest> closest(points.size());
   spatial::ClosestBatch(to).find(points, closest);
-  std::uint32_t triangle = kNone;
-  Vec3d n;  // of that triangle: several samples in a row have the same
+  // Several samples in a row have the same triangle, and often the same nearest one.
+  std::uint32_t triangle = kNone, other = kNone;
+  Vec3d n, m;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Sample& sample = samples[i];
     const spatial::Nearest& nearest = closest[i];
@@ -73,10 +74,12 @@ Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const
       triangle = sample.triangle;
       n = unit_normal(from, triangle);
     }
-    const Vec3d m = unit_normal(to.surface(), nearest.triangle);
+    if (nearest.triangle != other) {
+      other = nearest.triangle;
+      m = unit_normal(to.surface(), other);
+    }
     if (n != Vec3d{} && m != Vec3d{}) {
-      // acos is not the same on every machine; this angle is for reading only, nothing is decided by it.
-      sums.degrees += std::acos(std::clamp(dot(n, m), -1.0, 1.0)) * 180 / std::numbers::pi;
+      sums.degrees += arc_cosine_degrees(dot(n, m));
       ++sums.with_normal;
     }
     sums.add({nearest.distance_sq, sample.triangle, sample.point});
@@ -84,23 +87,36 @@ Sums measure_samples(const spatial::Surface& from, const spatial::Bvh& to, const
   return sums;
 }
 
-// Percentiles and histogram. Changes the order of the distances.
-void spread(std::vector<float>& distances, DirectedDistance& out) {
+// Percentiles and histogram. Changes the order of the distances: each percentile is looked for above the one before.
+void spread(std::vector<float>& distances, DirectedDistance& out, const Task& task) {
+  auto from = distances.begin();
   const auto percentile = [&](double share) {
-    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(distances.size() - 1));
-    std::nth_element(distances.begin(), distances.begin() + rank, distances.end());
-    return static_cast<double>(distances[static_cast<std::size_t>(rank)]);
+    const auto at = distances.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(distances.size() - 1));
+    std::nth_element(from, at, distances.end());
+    from = at;
+    return static_cast<double>(*at);
   };
   out.median = percentile(0.5);
   out.percentile_95 = percentile(0.95);
   out.percentile_99 = percentile(0.99);
-  const auto largest = static_cast<double>(*std::max_element(distances.begin(), distances.end()));
-  out.histogram.assign(kBins, 0);
+  const auto largest = static_cast<double>(*std::max_element(from, distances.end()));
+  using Counts = std::array<std::uint64_t, kBins>;
+  const Counts counts = parallel_reduce(
+      distances.size(), kChunk * 16, task, Counts{},
+      [&](std::size_t begin, std::size_t end) {
+        Counts part{};
+        for (std::size_t i = begin; i < end; ++i) {
+          const double bin = largest > 0 ? static_cast<double>(distances[i]) / largest * static_cast<double>(kBins) : 0;
+          ++part[std::min(kBins - 1, static_cast<std::size_t>(bin))];
+        }
+        return part;
+      },
+      [](Counts a, const Counts& b) {
+        for (std::size_t i = 0; i < kBins; ++i) a[i] += b[i];
+        return a;
+      });
+  out.histogram.assign(counts.begin(), counts.end());
   out.histogram_step = largest / static_cast<double>(kBins);
-  for (const float d : distances) {
-    const double bin = largest > 0 ? static_cast<double>(d) / largest * static_cast<double>(kBins) : 0;
-    ++out.histogram[std::min(kBins - 1, static_cast<std::size_t>(bin))];
-  }
 }
 
 }  // namespace
@@ -140,7 +156,7 @@ DirectedDistance directed_distance(const spatial::Surface& from, const spatial::
     const auto n = static_cast<double>(sums.samples);
     out.mean = sums.distance / n;
     out.rms = std::sqrt(sums.distance_sq / n);
-    spread(distances, out);
+    spread(distances, out, task);
   }
   if (sums.with_normal > 0) out.normal_degrees = sums.degrees / static_cast<double>(sums.with_normal);
   return out;

@@ -1,6 +1,7 @@
 #include "lodestone/spatial/bvh.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "lodestone/base/parallel.h"
@@ -12,8 +13,18 @@ namespace {
 
 constexpr std::size_t kChunk = 4096;
 using Float4 = float __attribute__((vector_size(16)));
+using Int4 = int __attribute__((vector_size(16)));
 
 Float4 load(const float* p) { return *reinterpret_cast<const Float4*>(p); }
+
+// A bit for each of four comparisons.
+unsigned bits_of(Int4 holds) {
+#ifdef __SSE__
+  return static_cast<unsigned>(__builtin_ia32_movmskps(reinterpret_cast<Float4>(holds)));
+#else
+  return (holds[0] != 0 ? 1U : 0U) | (holds[1] != 0 ? 2U : 0U) | (holds[2] != 0 ? 4U : 0U) | (holds[3] != 0 ? 8U : 0U);
+#endif
+}
 
 Float4 at_least_zero(Float4 a) {
   const Float4 zero{};
@@ -196,8 +207,10 @@ bool Bvh::triangles_in(const Box3d& box, std::size_t most, std::vector<std::uint
     const Node& node = nodes_[level_first_[place.level - 1] + place.index];
     auto inside = load(node.min[0]) <= high[0] && load(node.max[0]) >= low[0];
     for (std::size_t k = 1; k < 3; ++k) inside = inside && load(node.min[k]) <= high[k] && load(node.max[k]) >= low[k];
-    for (std::uint32_t slot = 4; slot-- > 0;) {
-      if (inside[slot] == 0) continue;
+    unsigned left = bits_of(inside);
+    while (left != 0) {
+      const auto slot = static_cast<std::uint32_t>(31 - std::countl_zero(left));
+      left ^= 1U << slot;
       const std::uint32_t child = place.index * 4 + slot;
       if (place.level > 1) {
         stack[top++] = {place.level - 1, child};

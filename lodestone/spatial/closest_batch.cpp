@@ -90,22 +90,36 @@ Float4 root(Float4 a) { return Float4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqr
 
 }  // namespace
 
-// Along a Hilbert curve through their box; ties by number.
+// Along a Hilbert curve through their box, as fine as the groups need it; ties by number. Two rounds of counting.
 void ClosestBatch::sort(std::span<const Vec3d> points) {
+  constexpr unsigned kBits = 6, kDigits = 9;
+  constexpr std::uint32_t kValues = 1U << kDigits;
+  static_assert(3 * kBits == 2 * kDigits);
   Box3d box;
   for (const Vec3d& p : points) box.add(p);
   const Vec3d size = box.size();
-  const double extent = std::max({size.x, size.y, size.z}), cells = extent > 0 ? 255 / extent : 0;
+  const double extent = std::max({size.x, size.y, size.z}), cells = extent > 0 ? ((1U << kBits) - 1) / extent : 0;
   keys_.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3d at = (points[i] - box.min) * cells;
-    const std::uint64_t key = hilbert_key<8>(static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y),
-                                             static_cast<std::uint32_t>(at.z));
-    keys_[i] = key << 32 | i;
+    keys_[i] = static_cast<std::uint32_t>(hilbert_key<kBits>(
+        static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y), static_cast<std::uint32_t>(at.z)));
   }
-  std::sort(keys_.begin(), keys_.end());
   order_.resize(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) order_[i] = static_cast<std::uint32_t>(keys_[i]);
+  half_sorted_.resize(points.size());
+  const auto round = [&](unsigned shift, auto&& number, std::vector<std::uint32_t>& into) {
+    std::array<std::uint32_t, kValues + 1> first{};
+    for (const std::uint32_t key : keys_) ++first[((key >> shift) & (kValues - 1)) + 1];
+    for (std::size_t d = 1; d <= kValues; ++d) first[d] += first[d - 1];
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::uint32_t n = number(i);
+      into[first[(keys_[n] >> shift) & (kValues - 1)]++] = n;
+    }
+  };
+  round(
+      0, [](std::size_t i) { return static_cast<std::uint32_t>(i); }, half_sorted_);
+  round(
+      kDigits, [&](std::size_t i) { return half_sorted_[i]; }, order_);
 }
 
 bool ClosestBatch::find_group(std::span<const Vec3d> points, Group group, std::span<Nearest> closest) {

@@ -33,8 +33,7 @@ class ClosestBatch {
   const Bvh& tree_;
   std::uint32_t hint_ = kNone;
   double within_ = -1;  // how far to look, from the group before; negative: not known
-  std::vector<std::uint64_t> keys_;
-  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> keys_, half_sorted_, order_;
   std::vector<std::uint32_t> near_;
   std::array<std::array<float, kGroup>, kMostTriangles> lowest_{};  // distance at least, by triangle of near_
   std::array<float, kGroup> highest_{};                             // to the closest at most

@@ -1,0 +1,23 @@
+#include "lodestone/math/angle.h"
+
+#include <gtest/gtest.h>
+
+namespace lodestone {
+namespace {
+
+TEST(Angle, arc_cosine_inverts_the_cosine) {
+  for (int i = 0; i <= 1800; ++i) {
+    const double degrees = i * 0.1;
+    EXPECT_NEAR(arc_cosine_degrees(sin_cos_degrees(degrees).cos), degrees, 2e-6) << degrees;
+  }
+}
+
+TEST(Angle, arc_cosine_at_its_ends_and_beyond) {
+  EXPECT_EQ(arc_cosine_degrees(1), 0);
+  EXPECT_EQ(arc_cosine_degrees(-1), 180);
+  EXPECT_EQ(arc_cosine_degrees(1 + 1e-12), 0);
+  EXPECT_EQ(arc_cosine_degrees(-1 - 1e-12), 180);
+}
+
+}  // namespace
+}  // namespace lodestone
