@@ -10,6 +10,7 @@
 #include "app/picture.h"
 #include "app/render_options.h"
 #include "app/render_sheet.h"
+#include "app/shared_options.h"
 #include "app/text.h"
 #include "app/verbs.h"
 #include "lodestone/base/file.h"
@@ -122,6 +123,7 @@ Result<ExitCode> run_render(const Arguments& arguments, Console& console) {
   if (options.shading == render::Shading::heat) {
     const render::HeatRange range = options.heat_range.value_or(render::default_heat_range(*scene));
     report.heat_range = {range.least, range.largest};
+    if (request.attribute == "_ERROR") options.unit = unit_name(model->meters_per_unit);  // as measure --heat writes it
   }
   const Camera camera = request.camera.camera(*scene, static_cast<double>(options.width) / options.height);
   report.eye = triple(camera.eye);

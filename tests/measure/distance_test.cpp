@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "lodestone/measure/screen.h"
 #include "support/shapes.h"
 
@@ -173,6 +175,18 @@ TEST(Screen, pixels_and_errors_are_inverse) {
   EXPECT_NEAR(error_to_pixels(1, 1, {1000, 90, 1}), 500, 1e-9);
   EXPECT_LE(screen_coverage(1, 0, view), 1);
   EXPECT_GT(screen_coverage(1, 1, view), screen_coverage(1, 2, view));
+}
+
+TEST(Screen, orthographic_views_know_no_distance) {
+  View view;
+  view.orthographic_height = 10;
+  view.height_px = 1000;
+  EXPECT_NEAR(error_to_pixels(0.02, 3, view), 2, 1e-12);
+  EXPECT_EQ(error_to_pixels(0.02, 3, view), error_to_pixels(0.02, 300, view));
+  EXPECT_NEAR(pixels_to_error(2, 7, view), 0.02, 1e-12);
+  EXPECT_EQ(switch_distance(0.005, 1, view), 0);
+  EXPECT_EQ(switch_distance(0.02, 1, view), std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(screen_coverage(1, 50, view), 3.14159265 / (100 * 16.0 / 9), 1e-9);
 }
 
 }  // namespace
