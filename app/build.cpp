@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "app/build_plan.h"
+#include "app/build_report.h"
 #include "app/input.h"
 #include "app/json.h"
 #include "app/table.h"
@@ -59,16 +60,16 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   if (!options) return fail(options.error());
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
   notes.insert(notes.end(), warnings.begin(), warnings.end());
-  if (plan.image_error) {
+  if (plan.image_error || plan.report) {
     if (Result<void> decoded = io::decode_base_colors(*model, notes, task); !decoded) return fail(decoded.error());
   }
   for (const std::string& note : notes) console.note(fmt::format("{}: {}", report.input, note));
   Result<chain::LadderResult> result =
-      chain::build_ladder(std::move(*model), *options, task.part(0.8, "making levels"));
+      chain::build_ladder(std::move(*model), *options, task.part(plan.report ? 0.5 : 0.8, "making levels"));
   if (!result) return fail(result.error());
   report.levels_seconds = result->simplify_seconds;
   report.measure_seconds = result->measure_seconds;
-  report.shortfalls = std::move(result->shortfalls);
+  report.shortfalls = result->shortfalls;
 
   watch.lap();
   const io::WriteOptions write{plan.compression, chain::screen_coverages(result->ladder, plan.view)};
@@ -81,6 +82,11 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   for (const std::string& warning : written->warnings) {
     console.note(fmt::format("{}: {}", job.output.string(), warning));
     report.warnings.push_back(warning);
+  }
+  if (!job.report.empty()) {
+    const Result<void> done = write_report(job, plan, *result, *written, warnings, console, task.part(0.3, "drawing"));
+    if (!done) return fail(done.error());
+    report.report = job.report.string();
   }
   report.total_seconds = watch.total();
   report.peak_memory_bytes = peak_memory_bytes();

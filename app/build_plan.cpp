@@ -6,9 +6,11 @@
 #include <map>
 #include <system_error>
 
+#include "app/build_report.h"
 #include "app/influence.h"
 #include "app/input.h"
 #include "app/text.h"
+#include "lodestone/base/text.h"
 #include "lodestone/base/units.h"
 
 namespace lodestone::app {
@@ -58,6 +60,8 @@ Result<BuildPlan> build_plan(const Arguments& arguments) {
   plan.influence = std::move(*influence);
   plan.compression = compression_of(arguments);
   plan.image_error = arguments.has("--image-error");
+  plan.report = arguments.has("--report");
+  plan.options = report_options(arguments);
   return plan;
 }
 
@@ -139,28 +143,48 @@ std::vector<std::string> output_names(const std::vector<fs::path>& inputs) {
   return names;
 }
 
-Result<void> check_distinct(const std::vector<BuildJob>& jobs) {
+// Of the outputs, or of the reports. A report never has the name of a model, as its ending is another.
+Result<void> check_distinct(const std::vector<BuildJob>& jobs, fs::path BuildJob::*place) {
   std::map<fs::path, fs::path> owner;
   for (const BuildJob& job : jobs) {
-    const auto [found, fresh] = owner.emplace(job.output.lexically_normal(), job.input);
+    if ((job.*place).empty()) continue;
+    const auto [found, fresh] = owner.emplace((job.*place).lexically_normal(), job.input);
     if (fresh) continue;
     return fail(ErrorCode::bad_argument,
                 fmt::format("both {} and {} would be written there", found->second.string(), job.input.string()),
-                job.output.string(), "put {name} into -o, or build them apart");
+                (job.*place).string(), "put {name} into it, or build them apart");
   }
   return {};
 }
 
 // Before a folder exists only the names can be checked.
 Result<void> check_outputs(const BuildJobs& all, const std::vector<fs::path>& inputs, io::Compression compression) {
-  if (const Result<void> distinct = check_distinct(all.jobs); !distinct) return distinct;
+  for (const auto place : {&BuildJob::output, &BuildJob::report}) {
+    if (const Result<void> distinct = check_distinct(all.jobs, place); !distinct) return distinct;
+  }
   const bool folder_exists = all.folder.empty() || is_folder(all.folder);
   for (const BuildJob& job : all.jobs) {
     Result<void> checked = check_output(job.output, inputs, compression);
     if (checked) checked = io::check_ladder_name(job.output, compression);
+    if (checked && !job.report.empty()) checked = check_place(job.report, inputs);
     if (!checked && (folder_exists || checked.error().code == ErrorCode::bad_argument)) return checked;
   }
   return {};
+}
+
+// Empty without --report.
+Result<std::string> report_pattern(const Arguments& arguments, bool batch) {
+  if (!arguments.has("--report")) return std::string();
+  std::string report = arguments.text("--report");
+  const std::string ending = lower_case(fs::path(report).extension().string());
+  if (ending != ".html" && ending != ".htm") {
+    return fail(ErrorCode::bad_argument, "--report is a page, its name must end in .html", report);
+  }
+  if (batch && report.find("{name}") == std::string::npos) {
+    return fail(ErrorCode::bad_argument, fmt::format("--report {} is one page, but there are several inputs", report),
+                {}, "put {name} into it, such as --report '{name}.html'");
+  }
+  return report;
 }
 
 }  // namespace
@@ -185,10 +209,13 @@ Result<BuildJobs> build_jobs(const Arguments& arguments) {
                   output, "name another folder for -o");
     }
   }
+  const Result<std::string> report = report_pattern(arguments, all.batch);
+  if (!report) return fail(report.error());
   const std::string pattern = into_folder ? (fs::path(output) / "{name}.glb").string() : output;
   const std::vector<std::string> names = output_names(*inputs);
   for (std::size_t i = 0; i < inputs->size(); ++i) {
-    all.jobs.push_back(BuildJob{(*inputs)[i], replaced(pattern, "{name}", names[i])});
+    all.jobs.push_back(
+        BuildJob{(*inputs)[i], replaced(pattern, "{name}", names[i]), replaced(*report, "{name}", names[i])});
   }
   const Result<void> checked = check_outputs(all, *inputs, compression_of(arguments));
   if (!checked) return fail(checked.error());

@@ -8,6 +8,7 @@
 #include "app/influence.h"
 #include "app/shared_options.h"
 #include "lodestone/chain/build_ladder.h"
+#include "lodestone/report/html_report.h"
 
 namespace lodestone::app {
 
@@ -22,7 +23,9 @@ struct BuildPlan {
   LengthRules lengths;
   InfluencePlan influence;
   measure::DistanceOptions distance;
-  bool image_error = false;  ///< --image-error
+  bool image_error = false;                   ///< --image-error
+  bool report = false;                        ///< --report
+  std::vector<report::ReportOption> options;  ///< all that was asked, for the report
   io::Compression compression = io::Compression::none;
 };
 
@@ -39,6 +42,7 @@ Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& 
 
 struct BuildJob {
   std::filesystem::path input, output;
+  std::filesystem::path report;  ///< empty: none
 };
 
 struct BuildJobs {

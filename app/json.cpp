@@ -74,6 +74,7 @@ Json build_json(const BuildReport& report) {
                      {"write", report.write_seconds},
                      {"total", report.total_seconds}};
   json["peak_memory_bytes"] = report.peak_memory_bytes;
+  if (!report.report.empty()) json["report"] = report.report;
   json["warnings"] = report.warnings;
   json["shortfalls"] = Json::array();
   for (const chain::Shortfall& shortfall : report.shortfalls) {

@@ -32,6 +32,7 @@ struct LevelReport {
 struct BuildReport {
   std::string input;
   std::string failure;  ///< the error's line; empty = it worked and the rest holds
+  std::string report;   ///< the page's file; empty without --report
   std::size_t triangles = 0;
   double diagonal = 0;
   std::string unit;  ///< empty = the model has none

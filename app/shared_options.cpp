@@ -202,6 +202,20 @@ OptionGroup output_group(bool compress) {
   return group;
 }
 
+OptionGroup with_report(OptionGroup group) {
+  group.options.push_back(
+      {"--report",
+       "",
+       "PAGE",
+       "",
+       "",
+       "also write a page (.html) with figures, curves, warnings, and pictures of each level; {name} "
+       "stands for the input's name",
+       {},
+       Completion::file});
+  return group;
+}
+
 OptionGroup result_group() { return {"Output", {json_option()}}; }
 
 OptionGroup general_group() {

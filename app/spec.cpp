@@ -23,7 +23,7 @@ VerbSpec build_spec() {
       "Makes a ladder of levels from a model and measures each level's error against the original.",
       {"INPUT...", 1, kAnyNumber, {}, Completion::file},
       {ladder_target_group(), view_group(), length_group(), method_group(), level_attributes_group(),
-       with_image_error(measuring_group(kBuildSamples)), output_group(true), general_group()},
+       with_image_error(measuring_group(kBuildSamples)), with_report(output_group(true)), general_group()},
       {{"lod build statue.ply -o statue.glb", "five levels in one GLB (MSFT_lod), each with half the triangles"},
        {"lod build statue.ply -o statue_LOD{level}.obj --error 0.05%,0.2%,1%",
         "a file a level, each within a measured error"},

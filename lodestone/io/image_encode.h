@@ -1,4 +1,4 @@
-// Writing pictures: PNG and lossless WebP.
+// Writing pictures: PNG and WebP.
 #pragma once
 
 #include <cstdint>
@@ -18,5 +18,9 @@ bool is_picture_extension(std::string_view extension);
 /// without alpha are written without. Errors: bad_argument (another ending, no pixels), unsupported (larger than the
 /// format allows), cannot_write.
 Result<std::uint64_t> write_picture(const Pixels& pixels, const std::filesystem::path& path);
+
+/// A small WebP for looking at, not lossless, without alpha; `quality` 0 to 100. Errors: bad_argument (no pixels, more
+/// than the format allows), out_of_memory.
+Result<std::string> preview_webp(const Pixels& pixels, int quality = 86);
 
 }  // namespace lodestone::io

@@ -4,6 +4,7 @@
 #include <webp/encode.h>
 
 #include "lodestone/io/image_codecs_detail.h"
+#include "lodestone/io/image_encode.h"
 
 namespace lodestone::io {
 
@@ -43,6 +44,21 @@ Result<std::string> encode_webp(const Pixels& pixels, const std::string& name) {
     size = WebPEncodeLosslessRGB(rgb.data(), width, height, width * 3, &bytes);
   }
   if (size == 0) return fail(ErrorCode::out_of_memory, "the WebP can't be encoded", name, "write a PNG");
+  std::string encoded(reinterpret_cast<const char*>(bytes), size);
+  WebPFree(bytes);
+  return encoded;
+}
+
+Result<std::string> preview_webp(const Pixels& pixels, int quality) {
+  if (pixels.width == 0 || pixels.height == 0 || pixels.width > WEBP_MAX_DIMENSION ||
+      pixels.height > WEBP_MAX_DIMENSION) {
+    return fail(ErrorCode::bad_argument, fmt::format("a WebP can't have {} x {} pixels", pixels.width, pixels.height));
+  }
+  const int width = static_cast<int>(pixels.width), height = static_cast<int>(pixels.height);
+  const std::vector<std::uint8_t> rgb = without_alpha(pixels);
+  std::uint8_t* bytes = nullptr;
+  const std::size_t size = WebPEncodeRGB(rgb.data(), width, height, width * 3, static_cast<float>(quality), &bytes);
+  if (size == 0) return fail(ErrorCode::out_of_memory, "the WebP can't be encoded");
   std::string encoded(reinterpret_cast<const char*>(bytes), size);
   WebPFree(bytes);
   return encoded;

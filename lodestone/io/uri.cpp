@@ -4,7 +4,7 @@
 #include <cctype>
 #include <optional>
 
-#include "lodestone/io/base64_detail.h"
+#include "lodestone/base/base64.h"
 #include "lodestone/io/uri_detail.h"
 
 namespace lodestone::io {

@@ -5,9 +5,12 @@
 #include <string>
 #include <string_view>
 
-namespace lodestone::io {
+namespace lodestone {
 
 /// The bytes, or nothing if a character is not of the alphabet or the length cannot be. Padding may be missing. O(n).
 std::optional<std::string> decode_base64(std::string_view text);
 
-}  // namespace lodestone::io
+/// With padding. O(n).
+std::string encode_base64(std::string_view bytes);
+
+}  // namespace lodestone

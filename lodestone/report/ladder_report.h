@@ -1,0 +1,18 @@
+// From a ladder that was built and written to the data of its report.
+#pragma once
+
+#include "lodestone/base/result.h"
+#include "lodestone/base/task.h"
+#include "lodestone/chain/build_ladder.h"
+#include "lodestone/io/write.h"
+#include "lodestone/report/html_report.h"
+
+namespace lodestone::report {
+
+/// Draws all levels and counts their shapes; fills in all but `name`, `unit`, `view`, `options` and `version`. The
+/// original's textures must be decoded before the ladder is built (io::decode_base_colors()). Errors: those of
+/// draw_levels().
+Result<ReportData> ladder_report(const chain::LadderResult& result, const io::WriteReport& written,
+                                 const PictureOptions& pictures = {}, Task task = {});
+
+}  // namespace lodestone::report
