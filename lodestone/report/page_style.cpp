@@ -66,7 +66,7 @@ footer.wide { padding-top: 44px; padding-bottom: 36px; }
 @media print { :root { color-scheme: light; --paper: #fff; --card: #fff; --ink: #000; --soft: #444; --line: #ccc; --accent: #000; --warn: #fff; }
   body { font-size: 11pt; } nav, .skip { display: none; } section { padding-top: 22px; }
   .level, .plots figure, tr, .warnings li { break-inside: avoid; } h2, h3 { break-after: avoid; }
-  .shots { grid-template-columns: repeat(3, 1fr); } .scroll { overflow: visible; } table { font-size: 9pt; } th, td { padding: 4px 6px; } }
+  .shots { grid-template-columns: repeat(3, 1fr); } .scroll { overflow: visible; } table { font-size: 8pt; } th, td { padding: 3px 5px; white-space: normal; } }
 )css";
 
 }  // namespace lodestone::report::detail

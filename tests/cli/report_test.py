@@ -1,0 +1,40 @@
+"""build --report: a page that needs nothing else, written whole or not at all."""
+from support import Scratch
+
+
+class Report(Scratch):
+    def test_page_and_json(self):
+        built = self.json("build", "statue.ply", "-o", "s.glb", "--levels", "3", "--report", "s.html")
+        self.assertEqual(built["report"], "s.html")
+        page = (self.folder / "s.html").read_text()
+        for part in ("statue.ply", "4,000", "--levels", "data:image/webp;base64,", "<svg", "Certified"):
+            self.assertIn(part, page)
+        for part in ("http:", "https:", "<script", str(self.folder)):
+            self.assertNotIn(part, page)
+        self.assertNotIn("report", self.json("build", "statue.ply", "-o", "t.glb", "--levels", "3"))
+        self.assertEqual((self.folder / "s.glb").read_bytes(), (self.folder / "t.glb").read_bytes())
+
+    def test_same_page_every_time(self):
+        pages = []
+        for threads in ("1", "3"):
+            self.lod("build", "statue.ply", "-o", "s.glb", "--levels", "3", "--report", "s.html", "--threads", threads)
+            pages.append((self.folder / "s.html").read_bytes())
+        self.assertEqual(pages[0], pages[1])
+
+    def test_batches(self):
+        (self.folder / "models").mkdir()
+        for name in ("a", "b"):
+            (self.folder / "models" / f"{name}.ply").write_bytes((self.folder / "statue.ply").read_bytes())
+        self.assert_error(self.lod("build", "models/", "-o", "out/", "--report", "all.html", code=2), "{name}")
+        runs = self.json("build", "models/", "-o", "out/", "--levels", "2", "--report", "out/{name}.html")["runs"]
+        self.assertEqual([run["report"] for run in runs], ["out/a.html", "out/b.html"])
+        self.assertTrue((self.folder / "out" / "b.html").is_file())
+
+    def test_places_that_can_not_be(self):
+        for words, code, part in ((("--report", "page.txt"), 2, ".html"), (("--report", "none/page.html"), 1, "folder"),
+                                  (("--report", "statue.ply"), 2, ".html")):
+            with self.subTest(words):
+                self.assert_error(self.lod("build", "statue.ply", "-o", "s.glb", *words, code=code), part)
+        self.assertEqual(self.files(), ["statue.ply"])
+        (self.folder / "page.html").mkdir()
+        self.assert_error(self.lod("build", "statue.ply", "-o", "s.glb", "--report", "page.html", code=1), "directory")
