@@ -316,6 +316,31 @@ std::string to_json(const SheetReport& report) {
   return text_of(json);
 }
 
+std::string to_json(const VoxelReport& report) {
+  Json json;
+  json["input"] = {{"path", report.input}, {"triangles", report.triangles_in}};
+  json["resolution"] = report.resolution;
+  json["voxels_inside"] = report.voxels_inside;
+  json["fill"] = report.fill;
+  json["fill_reason"] = report.fill_reason;
+  json["triangles"] = report.triangles;
+  json["relative_error"] = nullptr;
+  if (report.error) {
+    add_error(json, *report.error);
+    json["diagonal"] = report.error->diagonal;
+  }
+  json["unit"] = unit_or_null(report.unit);
+  json["file"] = report.output;
+  json["bytes"] = report.bytes;
+  json["seconds"] = {{"read", report.read_seconds},         {"voxelize", report.voxelize_seconds},
+                     {"resample", report.resample_seconds}, {"isosurface", report.isosurface_seconds},
+                     {"measure", report.measure_seconds},   {"write", report.write_seconds},
+                     {"total", report.total_seconds}};
+  json["peak_memory_bytes"] = report.peak_memory_bytes;
+  json["warnings"] = report.warnings;
+  return text_of(json);
+}
+
 std::string to_json(const ConvertReport& report) {
   Json json;
   json["input"] = {{"path", report.input}, {"triangles", report.triangles}};

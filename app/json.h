@@ -17,6 +17,7 @@ std::string to_json(const MeasureReport& report);
 std::string to_json(const InfoReport& report);
 std::string to_json(const RenderReport& report);
 std::string to_json(const SheetReport& report);
+std::string to_json(const VoxelReport& report);
 std::string to_json(const ConvertReport& report);
 std::string to_json(const SampleReport& report);
 

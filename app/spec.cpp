@@ -8,6 +8,7 @@
 #include "app/render_sheet.h"
 #include "app/shared_options.h"
 #include "app/verbs.h"
+#include "app/voxel_options.h"
 
 namespace lodestone::app {
 namespace {
@@ -81,6 +82,32 @@ VerbSpec render_spec() {
           "is +x. Faces seen from behind are drawn in a dull blue unless their material is double-sided. A numbers' "
           "attribute (--shading heat --attribute NAME) is drawn with a legend.",
           run_render};
+}
+
+VerbSpec remesh_spec() {
+  return {
+      "remesh",
+      "Makes a new closed surface of even triangles from a model, by way of voxels.",
+      one_model(),
+      {remesh_group(), measuring_group(kBuildSamples), output_group(true), general_group()},
+      {{"lod remesh statue.ply -o even.ply", "128 voxels along the longest side"},
+       {"lod remesh tower.glb -o hull.glb --resolution 200", "whatever the input, one closed and manifold mesh"},
+       {"lod remesh statue.ply -o blocks.ply --resolution 40 --no-project", "as the voxels have it"}},
+      "The model is cut into voxels once, K times finer than asked; their shares in the larger ones are contoured at "
+      "a half (Marching Cubes), and the vertices moved onto the input. Attributes are not carried over.",
+      run_remesh};
+}
+
+VerbSpec voxelize_spec() {
+  return {"voxelize",
+          "Fills a model with voxels and writes them as cubes.",
+          one_model(),
+          {voxel_group(), output_group(true), general_group()},
+          {{"lod voxelize statue.ply -o cubes.ply --resolution 32", "32 voxels along the longest side"},
+           {"lod voxelize tower.glb -o cubes.glb --resolution 64 --fill nonzero", "overlapping parts are one solid"},
+           {"lod voxelize statue.ply -o cubes.obj --resolution 16 --json", "figures as JSON"}},
+          "",
+          run_voxelize};
 }
 
 VerbSpec info_spec() {
@@ -158,8 +185,9 @@ VerbSpec completion_spec() {
 }
 
 std::vector<VerbSpec> make_verbs() {
-  std::vector<VerbSpec> all{build_spec(),   simplify_spec(), measure_spec(), render_spec(),    info_spec(),
-                            convert_spec(), sample_spec(),   help_spec(),    completion_spec()};
+  std::vector<VerbSpec> all{build_spec(),  simplify_spec(), measure_spec(),   render_spec(),
+                            remesh_spec(), voxelize_spec(), info_spec(),      convert_spec(),
+                            sample_spec(), help_spec(),     completion_spec()};
   std::vector<std::string> names;
   for (const VerbSpec& verb : all) names.push_back(verb.name);
   for (VerbSpec& verb : all) {

@@ -14,6 +14,8 @@ Result<ExitCode> run_measure(const Arguments& arguments, Console& console);
 Result<ExitCode> run_info(const Arguments& arguments, Console& console);
 Result<ExitCode> run_render(const Arguments& arguments, Console& console);
 Result<ExitCode> run_convert(const Arguments& arguments, Console& console);
+Result<ExitCode> run_remesh(const Arguments& arguments, Console& console);
+Result<ExitCode> run_voxelize(const Arguments& arguments, Console& console);
 Result<ExitCode> run_sample(const Arguments& arguments, Console& console);
 Result<ExitCode> run_help(const Arguments& arguments, Console& console);
 Result<ExitCode> run_completion(const Arguments& arguments, Console& console);

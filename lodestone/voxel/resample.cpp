@@ -1,0 +1,139 @@
+#include "lodestone/voxel/resample.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "lodestone/base/parallel.h"
+
+namespace lodestone::voxel {
+
+namespace {
+
+// First small voxel of each large one, and the end.
+std::vector<std::uint32_t> cuts(std::uint32_t old_size, std::uint32_t new_size) {
+  std::vector<std::uint32_t> out(new_size + 1);
+  for (std::uint32_t i = 0; i <= new_size; ++i) {
+    out[i] = static_cast<std::uint32_t>(std::uint64_t{i} * old_size / new_size);
+  }
+  return out;
+}
+
+// Bits set from first to end of a row.
+std::uint32_t set_between(const std::uint64_t* row, std::uint32_t first, std::uint32_t end) {
+  std::uint32_t count = 0;
+  while (first < end) {
+    const std::uint32_t room = std::min(end - first, 64 - first % 64);
+    const std::uint64_t mask = room == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << room) - 1;
+    count += static_cast<std::uint32_t>(std::popcount(row[first / 64] >> (first % 64) & mask));
+    first += room;
+  }
+  return count;
+}
+
+// Bits set in each field of 2, 4 or 8 bits.
+std::uint64_t pairs(std::uint64_t w) { return w - (w >> 1 & 0x5555555555555555); }
+std::uint64_t nibbles(std::uint64_t w) {
+  const std::uint64_t two = pairs(w);
+  return (two & 0x3333333333333333) + (two >> 2 & 0x3333333333333333);
+}
+std::uint64_t bytes(std::uint64_t w) {
+  const std::uint64_t four = nibbles(w);
+  return (four + (four >> 4)) & 0x0f0f0f0f0f0f0f0f;
+}
+
+// Adds a row's counts of `ratio` voxels each, 64 bits at a time.
+void add_row(const std::uint64_t* row, std::uint32_t size, std::uint32_t ratio, std::uint32_t* counts) {
+  const std::uint32_t fields = 64 / ratio;
+  const std::uint64_t mask = (std::uint64_t{1} << ratio) - 1;
+  for (std::uint32_t x = 0; x < size; x += fields) {
+    std::uint64_t word = row[x / fields];
+    if (word == 0) continue;
+    word = ratio == 2 ? pairs(word) : ratio == 4 ? nibbles(word) : bytes(word);
+    const std::uint32_t end = std::min(fields, size - x);
+    for (std::uint32_t k = 0; k < end; ++k) counts[x + k] += static_cast<std::uint32_t>(word >> (k * ratio) & mask);
+  }
+}
+
+// Counts of one row of large voxels.
+void count_row(const BitVolume& volume, std::span<const std::uint32_t> xs, std::uint32_t ratio,
+               const std::uint64_t* row, std::vector<std::uint32_t>& counts) {
+  const auto size = static_cast<std::uint32_t>(counts.size());
+  if (ratio == 2 || ratio == 4 || ratio == 8) return add_row(row, size, ratio, counts.data());
+  if (std::all_of(row, row + volume.row_words, [](std::uint64_t w) { return w == 0; })) return;
+  for (std::uint32_t x = 0; x < size; ++x) counts[x] += set_between(row, xs[x], xs[x + 1]);
+}
+
+}  // namespace
+
+double voxel_value(const BitVolume& volume, Vec3d at) {
+  const auto& size = volume.grid.size;
+  std::int64_t low[3];
+  double share[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!(at[k] > -1 && at[k] < size[k])) return 0;
+    const double floor = std::floor(at[k]);
+    low[k] = static_cast<std::int64_t>(floor);
+    share[k] = at[k] - floor;
+  }
+  double sum = 0;
+  for (unsigned c = 0; c < 8; ++c) {
+    std::uint32_t p[3];
+    double weight = 1;
+    bool there = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool high = (c >> k & 1) != 0;
+      const std::int64_t i = low[k] + (high ? 1 : 0);
+      weight *= high ? share[k] : 1 - share[k];
+      there = there && i >= 0 && i < size[k];
+      p[k] = static_cast<std::uint32_t>(i);
+    }
+    if (there && volume.at(p[0], p[1], p[2])) sum += weight;
+  }
+  return sum;
+}
+
+Result<ScalarVolume<std::uint8_t>> downsample(const BitVolume& volume, const std::array<std::uint32_t, 3>& size,
+                                              Task task) {
+  const auto& old = volume.grid.size;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (size[k] >= 1 && size[k] <= old[k]) continue;
+    return fail(ErrorCode::bad_argument, fmt::format("{} voxels can't be made from {}", size[k], old[k]), {},
+                "use 1 to as many as there are");
+  }
+  ScalarVolume<std::uint8_t> out;
+  out.grid = volume.grid;
+  out.grid.size = size;
+  for (std::size_t k = 0; k < 3; ++k) out.grid.spacing[k] = volume.grid.spacing[k] * old[k] / size[k];
+  out.values.resize(static_cast<std::size_t>(out.grid.count()));
+  const std::vector<std::uint32_t> xs = cuts(old[0], size[0]), ys = cuts(old[1], size[1]), zs = cuts(old[2], size[2]);
+  const std::uint32_t ratio = old[0] % size[0] == 0 ? old[0] / size[0] : 0;  // 0: not a whole number
+  parallel_for(size[2], 1, task, [&](std::size_t z, std::size_t, std::size_t) {
+    std::vector<std::uint32_t> counts(size[0]);
+    for (std::uint32_t y = 0; y < size[1]; ++y) {
+      std::fill(counts.begin(), counts.end(), 0);
+      for (std::uint32_t fine_z = zs[z]; fine_z < zs[z + 1]; ++fine_z) {
+        for (std::uint32_t fine_y = ys[y]; fine_y < ys[y + 1]; ++fine_y) {
+          const std::uint64_t* row = volume.words.data() + volume.row_of(fine_y, fine_z);
+          count_row(volume, xs, ratio, row, counts);
+        }
+      }
+      const std::uint64_t area = std::uint64_t{zs[z + 1] - zs[z]} * (ys[y + 1] - ys[y]);
+      std::uint8_t* values = out.values.data() + out.index(0, y, static_cast<std::uint32_t>(z));
+      for (std::uint32_t x = 0; x < size[0]; ++x) {
+        if (counts[x] == 0) continue;
+        const std::uint64_t all = area * (xs[x + 1] - xs[x]);
+        values[x] =
+            counts[x] == all ? 255 : static_cast<std::uint8_t>((255 * std::uint64_t{counts[x]} + all / 2) / all);
+      }
+    }
+  });
+  if (task.cancelled()) return cancelled_error("resampling");
+  return out;
+}
+
+}  // namespace lodestone::voxel
