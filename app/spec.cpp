@@ -91,7 +91,7 @@ VerbSpec remesh_spec() {
       one_model(),
       {remesh_group(), measuring_group(kBuildSamples), output_group(true), general_group()},
       {{"lod remesh statue.ply -o even.ply", "128 voxels along the longest side"},
-       {"lod remesh tower.glb -o hull.glb --resolution 200", "whatever the input, one closed and manifold mesh"},
+       {"lod remesh statue.glb -o fine.glb --resolution 200", "a finer one"},
        {"lod remesh statue.ply -o blocks.ply --resolution 40 --no-project", "as the voxels have it"}},
       "The model is cut into voxels once, K times finer than asked; their shares in the larger ones are contoured at "
       "a half (Marching Cubes), and the vertices moved onto the input. Attributes are not carried over.",
@@ -104,7 +104,7 @@ VerbSpec voxelize_spec() {
           one_model(),
           {voxel_group(), output_group(true), general_group()},
           {{"lod voxelize statue.ply -o cubes.ply --resolution 32", "32 voxels along the longest side"},
-           {"lod voxelize tower.glb -o cubes.glb --resolution 64 --fill nonzero", "overlapping parts are one solid"},
+           {"lod voxelize statue.glb -o cubes.glb --resolution 64 --fill nonzero", "overlapping parts are one solid"},
            {"lod voxelize statue.ply -o cubes.obj --resolution 16 --json", "figures as JSON"}},
           "",
           run_voxelize};

@@ -49,6 +49,11 @@ Result<Mesh> contour(const BitVolume& solid, std::uint32_t resolution, const spa
   if (!shares) return fail(shares.error());
   seconds.resample += watch.lap();
   Result<Mesh> mesh = voxel::isosurface(*shares, {127.5}, task);
+  if (!mesh && mesh.error().code == ErrorCode::empty) {
+    return fail(ErrorCode::empty,
+                fmt::format("no part is half as thick as a voxel of {} along the longest side", resolution), {},
+                "raise --resolution");
+  }
   if (!mesh) return fail(mesh.error());
   const Vec3d voxel = shares->grid.spacing;
   if (options.project) voxel::project(*mesh, source, std::max({voxel.x, voxel.y, voxel.z}), task);
