@@ -108,9 +108,11 @@ Result<ExitCode> run_remesh(const Arguments& arguments, Console& console) {
   options.resolutions = {request->resolution};
   options.fill = request->fill;
   options.project = !arguments.has("--no-project");
-  const Result<std::uint64_t> ratio = arguments.count("--supersample", 1, 64);
-  if (!ratio) return fail(ratio.error());
-  options.ratio = static_cast<std::uint32_t>(*ratio);
+  if (arguments.has("--supersample")) {
+    const Result<std::uint64_t> ratio = arguments.count("--supersample", 1, 64);
+    if (!ratio) return fail(ratio.error());
+    options.ratio = static_cast<std::uint32_t>(*ratio);
+  }
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
   if (!distance) return fail(distance.error());
   options.distance = *distance;
@@ -125,8 +127,8 @@ Result<ExitCode> run_remesh(const Arguments& arguments, Console& console) {
   const Level& level = result->levels.front();
   report.resolution = result->resolution;
   report.voxels_inside = result->voxels_inside;
-  report.fill = name_of(result->fill);
-  report.fill_reason = result->fill_reason;
+  report.fill = name_of(result->fill.fill);
+  report.fill_reason = result->fill.reason;
   report.triangles = level.triangles;
   report.error = level.error;
   report.voxelize_seconds = result->seconds.voxelize;
@@ -152,15 +154,16 @@ Result<ExitCode> run_voxelize(const Arguments& arguments, Console& console) {
   const Result<Model> model = read(*request, report, console);
   if (!model) return fail(model.error());
   report.read_seconds = watch.lap();
+  const Result<chain::FillChoice> choice = chain::choose_fill(*model, request->fill, console.task());
+  if (!choice) return fail(choice.error());
   chain::SolidOptions options;
   options.resolution = request->resolution;
-  options.fill = request->fill;
-  const Result<chain::Solid> solid = chain::solid_of(*model, options, console.task().part(0.4, "voxelizing"));
+  const Result<chain::Solid> solid = chain::solid_of(*model, *choice, options, console.task().part(0.4, "voxelizing"));
   if (!solid) return fail(solid.error());
   report.resolution = solid->volume.grid.size;
   report.voxels_inside = solid->volume.set_count();
-  report.fill = name_of(solid->fill);
-  report.fill_reason = solid->fill_reason;
+  report.fill = name_of(choice->fill);
+  report.fill_reason = choice->reason;
   tell(report, solid->warnings, console);
   report.voxelize_seconds = watch.lap();
   Result<Mesh> mesh = voxel::cube_faces(solid->volume, console.task().part(0.4, "making cubes"));

@@ -1,5 +1,7 @@
 #include "app/voxel_options.h"
 
+#include <utility>
+
 namespace lodestone::app {
 
 OptionGroup voxel_group() {
@@ -17,22 +19,24 @@ OptionGroup voxel_group() {
             "RULE",
             "",
             "",
-            "what is inside: parity (an odd number of faces before it) or nonzero (overlapping closed pieces are one); "
-            "without: by the input",
-            {"parity", "nonzero"},
+            "what is inside: parity (an odd number of faces before it), nonzero (overlapping closed pieces are one) or "
+            "winding "
+            "(open surfaces, their holes closed); without: by the input",
+            {"parity", "nonzero", "winding"},
             Completion::choices}}};
 }
 
 OptionGroup remesh_group() {
   OptionGroup group = voxel_group();
-  group.options.push_back({"--supersample",
-                           "",
-                           "K",
-                           "4",
-                           "voxels",
-                           "voxels of the solid in one of the result, along each side (1 to 64)",
-                           {},
-                           Completion::none});
+  group.options.push_back(
+      {"--supersample",
+       "",
+       "K",
+       "",
+       "voxels",
+       "voxels of the solid in one of the result, along each side (1 to 64; without: 4, or 2 with winding)",
+       {},
+       Completion::none});
   group.options.push_back({"--no-project",
                            "",
                            "",
@@ -50,11 +54,23 @@ Result<std::uint32_t> resolution_of(const Arguments& arguments) {
   return static_cast<std::uint32_t>(*resolution);
 }
 
+namespace {
+constexpr std::pair<const char*, voxel::FillRule> kFills[] = {
+    {"parity", voxel::FillRule::parity}, {"nonzero", voxel::FillRule::nonzero}, {"winding", voxel::FillRule::winding}};
+}  // namespace
+
 std::optional<voxel::FillRule> fill_of(const Arguments& arguments) {
-  if (!arguments.has("--fill")) return std::nullopt;
-  return arguments.text("--fill") == "nonzero" ? voxel::FillRule::nonzero : voxel::FillRule::parity;
+  for (const auto& [name, fill] : kFills) {
+    if (arguments.text("--fill") == name) return fill;
+  }
+  return std::nullopt;
 }
 
-std::string name_of(voxel::FillRule fill) { return fill == voxel::FillRule::nonzero ? "nonzero" : "parity"; }
+std::string name_of(voxel::FillRule fill) {
+  for (const auto& [name, known] : kFills) {
+    if (fill == known) return name;
+  }
+  return "";
+}
 
 }  // namespace lodestone::app

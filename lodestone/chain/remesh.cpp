@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "lodestone/base/stopwatch.h"
-#include "lodestone/chain/solid.h"
 #include "lodestone/spatial/bvh.h"
 #include "lodestone/voxel/isosurface.h"
 #include "lodestone/voxel/project.h"
@@ -20,7 +19,7 @@ Result<void> check(const RemeshOptions& options) {
     return fail(ErrorCode::bad_argument, std::move(what), {}, std::move(remedy));
   };
   if (options.resolutions.empty()) return bad("no resolution is asked for", "ask for 4 voxels or more");
-  if (options.ratio == 0 || options.ratio > 64) return bad("the ratio must be from 1 to 64", {});
+  if (options.ratio > 64) return bad("the ratio must be at most 64", {});
   for (std::size_t i = 0; i < options.resolutions.size(); ++i) {
     const std::uint32_t n = options.resolutions[i];
     if (n < 4 || n > 16'384) return bad(fmt::format("a resolution of {} can't be", n), "use 4 to 16,384");
@@ -67,17 +66,19 @@ Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Ta
   if (const Result<void> ok = check(options); !ok) return fail(ok.error());
   RemeshResult out;
   Stopwatch watch;
+  const Result<FillChoice> choice = choose_fill(model, options.fill, task.part(0.1));
+  if (!choice) return fail(choice.error());
+  const std::uint32_t usual = choice->fill == voxel::FillRule::winding ? 2 : 4;
+  const std::uint32_t ratio = options.ratio > 0 ? options.ratio : usual;
   SolidOptions solid_options;
-  solid_options.resolution = options.resolutions.front() * options.ratio;
-  solid_options.margin = solid_options.multiple = options.ratio;  // whole voxels of the finest level
-  solid_options.fill = options.fill;
-  const Result<Solid> solid = solid_of(model, solid_options, task.part(0.3));
+  solid_options.resolution = options.resolutions.front() * ratio;
+  solid_options.margin = solid_options.multiple = ratio;  // whole voxels of the finest level
+  const Result<Solid> solid = solid_of(model, *choice, solid_options, task.part(0.3));
   if (!solid) return fail(solid.error());
   out.seconds.voxelize = watch.lap();
   out.resolution = solid->volume.grid.size;
   out.voxels_inside = solid->volume.set_count();
-  out.fill = solid->fill;
-  out.fill_reason = solid->fill_reason;
+  out.fill = *choice;
   out.warnings = solid->warnings;
 
   const Result<spatial::Surface> surface = spatial::flatten(model, task.part(0.1));

@@ -9,6 +9,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/chain/solid.h"
 #include "lodestone/core/level.h"
 #include "lodestone/measure/distance.h"
 #include "lodestone/voxel/voxelize.h"
@@ -19,9 +20,9 @@ struct RemeshOptions {
   /// Voxels along the longest side of each level, falling; 0 in front of none. The first is the finest.
   std::vector<std::uint32_t> resolutions{128};
   /// Voxels of the solid in one of the finest level, along each side (the paper's downsampling ratio; it finds 5 to 15
-  /// best; after projection more than 4 buy little).
-  std::uint32_t ratio = 4;
-  std::optional<voxel::FillRule> fill;  ///< without: by the input, see RemeshResult::fill_reason
+  /// best; after projection more than 4 buy little). 0: 4, or 2 where winding numbers fill, as they take their time.
+  std::uint32_t ratio = 0;
+  std::optional<voxel::FillRule> fill;  ///< without: by the input, see fill_for()
   bool project = true;                  ///< move vertices onto the source, at most a voxel of the level far
   bool measure = true;
   measure::DistanceOptions distance;
@@ -35,15 +36,14 @@ struct RemeshResult {
   std::vector<Level> levels;                  ///< one a resolution; method "voxels"
   std::array<std::uint32_t, 3> resolution{};  ///< of the solid
   std::uint64_t voxels_inside = 0;
-  voxel::FillRule fill = voxel::FillRule::parity;
-  std::string fill_reason;  ///< what was seen in the input and what was assumed, in plain words
+  FillChoice fill;
   std::vector<std::string> warnings;
   RemeshSeconds seconds;
 };
 
 /// Voxelizes the model's default scene once and contours it at each resolution: shares of set voxels, Marching Cubes at
 /// a half, vertices moved onto the source. Errors: bad_argument (resolutions that don't fall, or that need more than
-/// 65,535 voxels a side), empty, unsupported (open surfaces), cancelled.
+/// 65,535 voxels a side), empty, cancelled.
 Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options = {}, Task task = {});
 
 }  // namespace lodestone::chain

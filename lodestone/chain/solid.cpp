@@ -27,32 +27,41 @@ void widen(VoxelGrid& grid, std::uint32_t multiple) {
 }  // namespace
 
 voxel::FillRule fill_for(const Topology& t) {
+  if (t.boundary_edges > 0) return voxel::FillRule::winding;
   const bool pieces = t.components > 1 && t.boundary_edges + t.inconsistent_edges + t.nonmanifold_edges == 0;
   return pieces ? voxel::FillRule::nonzero : voxel::FillRule::parity;
 }
 
-Result<Solid> solid_of(const Model& model, const SolidOptions& options, Task task) {
+Result<FillChoice> choose_fill(const Model& model, std::optional<voxel::FillRule> asked, const Task& task) {
+  const Result<measure::Shape> shape = measure::shape_of(model, task);
+  if (!shape) return fail(shape.error());
+  const Topology& t = shape->topology;
+  FillChoice out{asked.value_or(fill_for(t)), reason_of(t), t.boundary_edges == 0, asked.has_value()};
+  if (out.closed || asked != voxel::FillRule::parity) return out;
+  return fail(ErrorCode::bad_argument, fmt::format("parity needs a closed surface, but {}", out.reason), {},
+              "use --fill winding");
+}
+
+Result<Solid> solid_of(const Model& model, const FillChoice& choice, const SolidOptions& options, Task task) {
   const Result<spatial::Surface> surface = spatial::flatten(model, task.part(0.3));
   if (!surface) return fail(surface.error());
-  const Result<measure::Shape> shape = measure::shape_of(model, task.part(0.2));
-  if (!shape) return fail(shape.error());
-  Solid out;
-  out.fill = options.fill.value_or(fill_for(shape->topology));
-  out.fill_reason = reason_of(shape->topology);
-
   Result<VoxelGrid> grid = voxel::grid_around(surface->bounds, options.resolution, options.margin);
   if (!grid) return fail(grid.error());
   widen(*grid, options.multiple);
-  Result<voxel::Voxelized> made = voxel::voxelize(*surface, *grid, {out.fill}, task.part(0.5));
+  Result<voxel::Voxelized> made = voxel::voxelize(*surface, *grid, {choice.fill}, task.part(0.7));
   if (!made) return fail(made.error());
   if (made->volume.set_count() == 0) {
     return fail(ErrorCode::empty, "no voxel lies inside the model", {},
-                shape->topology.closed ? "its parts are thinner than a voxel: raise --resolution"
-                                       : "it is open, so it encloses nothing: close it first");
+                choice.closed ? "its parts are thinner than a voxel: raise --resolution"
+                              : "it is open and encloses nothing: close it first");
+  }
+  Solid out;
+  if (choice.fill == voxel::FillRule::winding && !choice.asked) {
+    out.warnings.push_back(choice.reason + ": holes are closed by what seems most inside (winding numbers)");
   }
   if (made->leaking_columns > 0) {
     out.warnings.push_back(fmt::format("{} lines of voxels enter the model and never leave it, as {}",
-                                       with_separators(made->leaking_columns), out.fill_reason));
+                                       with_separators(made->leaking_columns), choice.reason));
   }
   out.volume = std::move(made->volume);
   return out;

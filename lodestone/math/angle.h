@@ -50,4 +50,22 @@ inline double arc_cosine_degrees(double cosine) {
   return cosine < 0 ? 180 - degrees : degrees;
 }
 
+/// The angle of (x, y) in radians, in [-pi, pi], within 4e-8; 0 at the origin. Abramowitz and Stegun, 4.4.49.
+inline double arc_tangent(double y, double x) {
+  constexpr double kPi = 3.14159265358979323846;
+  const double ax = std::fabs(x), ay = std::fabs(y);
+  const double small = ax < ay ? ax : ay, large = ax < ay ? ay : ax;
+  if (!(large > 0)) return 0;
+  const double t = small / large, tt = t * t;
+  double sum = 0.0028662257;
+  for (const double c :
+       {-0.0161657367, 0.0429096138, -0.0752896400, 0.1065626393, -0.1420889944, 0.1999355085, -0.3333314528, 1.0}) {
+    sum = sum * tt + c;
+  }
+  double angle = sum * t;
+  if (ay > ax) angle = kPi / 2 - angle;
+  if (x < 0) angle = kPi - angle;
+  return y < 0 ? -angle : angle;
+}
+
 }  // namespace lodestone

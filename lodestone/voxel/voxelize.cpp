@@ -13,6 +13,7 @@
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/voxel/column_raster_detail.h"
+#include "lodestone/voxel/fill_winding_detail.h"
 
 namespace lodestone::voxel {
 
@@ -159,6 +160,12 @@ Result<Voxelized> voxelize(const spatial::Surface& surface, const VoxelGrid& gri
   Stopwatch watch;
   Voxelized out;
   out.volume = BitVolume(grid);
+  if (options.fill == FillRule::winding) {
+    detail::fill_winding(surface, out.volume, task);
+    if (task.cancelled()) return cancelled_error("voxelizing");
+    out.seconds.filling = watch.lap();
+    return out;
+  }
   const std::vector<GridVertex> vertices = detail::grid_vertices(surface, grid, task);
   const std::vector<Band> bands = detail::bands_of(vertices, surface.triangles, grid, task);
   if (options.fill == FillRule::parity) {

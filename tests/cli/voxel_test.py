@@ -46,7 +46,8 @@ class Voxels(Scratch):
                                   (("statue.ply", "-o", "r.ply", "--fill", "magic"), 2, "parity"),
                                   (("statue.ply", "-o", "r.xyz"), 2, "xyz"),
                                   (("statue.ply",), 2, "-o"),
-                                  (("flat.ply", "-o", "r.ply"), 1, "open")):
+                                  (("flat.ply", "-o", "r.ply"), 1, "open"),
+                                  (("flat.ply", "-o", "r.ply", "--fill", "parity"), 2, "3 edges are open")):
             for verb in ("remesh", "voxelize"):
                 with self.subTest((verb, words)):
                     self.assert_error(self.lod(verb, *words, code=code), part)

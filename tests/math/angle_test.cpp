@@ -19,5 +19,14 @@ TEST(Angle, arc_cosine_at_its_ends_and_beyond) {
   EXPECT_EQ(arc_cosine_degrees(-1 - 1e-12), 180);
 }
 
+TEST(Angle, arc_tangent_of_all_directions) {
+  for (int i = -1799; i <= 1800; ++i) {
+    const SinCos at = sin_cos_degrees(i * 0.1);
+    EXPECT_NEAR(arc_tangent(at.sin * 3, at.cos * 3) * 180 / 3.14159265358979, i * 0.1, 3e-6) << i;
+  }
+  EXPECT_EQ(arc_tangent(0, 0), 0);
+  EXPECT_EQ(arc_tangent(0, 5), 0);
+}
+
 }  // namespace
 }  // namespace lodestone
