@@ -332,9 +332,13 @@ std::string to_json(const VoxelReport& report) {
   json["unit"] = unit_or_null(report.unit);
   json["file"] = report.output;
   json["bytes"] = report.bytes;
-  json["seconds"] = {{"read", report.read_seconds},         {"voxelize", report.voxelize_seconds},
-                     {"resample", report.resample_seconds}, {"isosurface", report.isosurface_seconds},
-                     {"measure", report.measure_seconds},   {"write", report.write_seconds},
+  json["seconds"] = {{"read", report.read_seconds},
+                     {"prepare", report.prepare_seconds},
+                     {"voxelize", report.voxelize_seconds},
+                     {"resample", report.resample_seconds},
+                     {"isosurface", report.isosurface_seconds},
+                     {"measure", report.measure_seconds},
+                     {"write", report.write_seconds},
                      {"total", report.total_seconds}};
   json["peak_memory_bytes"] = report.peak_memory_bytes;
   json["warnings"] = report.warnings;

@@ -87,8 +87,8 @@ struct VoxelReport {
   std::uint64_t voxels_inside = 0;
   std::size_t triangles_in = 0, triangles = 0;
   std::optional<LevelError> error;  ///< remesh only
-  double read_seconds = 0, voxelize_seconds = 0, resample_seconds = 0, isosurface_seconds = 0, measure_seconds = 0,
-         write_seconds = 0, total_seconds = 0;
+  double read_seconds = 0, prepare_seconds = 0, voxelize_seconds = 0, resample_seconds = 0, isosurface_seconds = 0,
+         measure_seconds = 0, write_seconds = 0, total_seconds = 0;
   std::uint64_t bytes = 0, peak_memory_bytes = 0;
   std::vector<std::string> warnings;
 };

@@ -75,7 +75,7 @@ Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Ta
   solid_options.margin = solid_options.multiple = ratio;  // whole voxels of the finest level
   const Result<Solid> solid = solid_of(model, *choice, solid_options, task.part(0.3));
   if (!solid) return fail(solid.error());
-  out.seconds.voxelize = watch.lap();
+  out.seconds.voxelize = solid->seconds.slicing + solid->seconds.filling;
   out.resolution = solid->volume.grid.size;
   out.voxels_inside = solid->volume.set_count();
   out.fill = *choice;
@@ -84,6 +84,7 @@ Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Ta
   const Result<spatial::Surface> surface = spatial::flatten(model, task.part(0.1));
   if (!surface) return fail(surface.error());
   const spatial::Bvh source(*surface, task);
+  out.seconds.prepare = watch.total() - out.seconds.voxelize;
   std::optional<measure::Reference> reference;
   if (options.measure) {
     Result<measure::Reference> made = measure::Reference::create(model, task.part(0.1));

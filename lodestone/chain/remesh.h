@@ -29,6 +29,7 @@ struct RemeshOptions {
 };
 
 struct RemeshSeconds {
+  double prepare = 0;  ///< what the rule needs to know, the scene in world space, its tree
   double voxelize = 0, resample = 0, isosurface = 0, measure = 0;
 };
 

@@ -64,6 +64,7 @@ Result<Solid> solid_of(const Model& model, const FillChoice& choice, const Solid
                                        with_separators(made->leaking_columns), choice.reason));
   }
   out.volume = std::move(made->volume);
+  out.seconds = made->seconds;
   return out;
 }
 

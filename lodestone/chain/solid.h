@@ -39,6 +39,7 @@ struct SolidOptions {
 struct Solid {
   BitVolume volume;
   std::vector<std::string> warnings;  ///< what had to be assumed
+  voxel::VoxelizeSeconds seconds;     ///< of voxelizing alone, without flattening the scene
 };
 
 /// Voxelizes the default scene: world space, all instances. Errors: empty (nothing drawn, no voxel inside),

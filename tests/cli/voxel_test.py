@@ -1,7 +1,7 @@
 """remesh and voxelize: closed surfaces by way of voxels."""
 from support import Scratch
 
-SECONDS = {"read", "voxelize", "resample", "isosurface", "measure", "write", "total"}
+SECONDS = {"read", "prepare", "voxelize", "resample", "isosurface", "measure", "write", "total"}
 
 
 class Voxels(Scratch):
