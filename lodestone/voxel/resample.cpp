@@ -127,8 +127,7 @@ Result<ScalarVolume<std::uint8_t>> downsample(const BitVolume& volume, const std
       for (std::uint32_t x = 0; x < size[0]; ++x) {
         if (counts[x] == 0) continue;
         const std::uint64_t all = area * (xs[x + 1] - xs[x]);
-        values[x] =
-            counts[x] == all ? 255 : static_cast<std::uint8_t>((255 * std::uint64_t{counts[x]} + all / 2) / all);
+        values[x] = static_cast<std::uint8_t>((255 * std::uint64_t{counts[x]} + all / 2) / all);
       }
     }
   });
