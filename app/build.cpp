@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <new>
+#include <optional>
 #include <system_error>
 
 #include "app/build_plan.h"
@@ -58,11 +59,12 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   std::vector<std::string> notes, warnings;
   const Result<chain::LadderOptions> options = ladder_options(plan, *model, notes, warnings);
   if (!options) return fail(options.error());
+  if (plan.image_error || plan.report) {
+    const Result<void> decoded = io::decode_base_colors(*model, warnings, task);
+    if (!decoded) return fail(decoded.error());
+  }
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
   notes.insert(notes.end(), warnings.begin(), warnings.end());
-  if (plan.image_error || plan.report) {
-    if (Result<void> decoded = io::decode_base_colors(*model, notes, task); !decoded) return fail(decoded.error());
-  }
   for (const std::string& note : notes) console.note(fmt::format("{}: {}", report.input, note));
   Result<chain::LadderResult> result =
       chain::build_ladder(std::move(*model), *options, task.part(plan.report ? 0.5 : 0.8, "making levels"));
@@ -71,6 +73,12 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   report.measure_seconds = result->measure_seconds;
   report.shortfalls = result->shortfalls;
 
+  std::optional<ReportPage> page;  // drawn before anything is written, so that an interrupted run leaves nothing
+  if (!job.report.empty()) {
+    Result<ReportPage> drawn = ReportPage::draw(job, plan, *result, warnings, task.part(0.3, "drawing"));
+    if (!drawn) return fail(drawn.error());
+    page.emplace(std::move(*drawn));
+  }
   watch.lap();
   const io::WriteOptions write{plan.compression, chain::screen_coverages(result->ladder, plan.view)};
   const Result<io::WriteReport> written =
@@ -83,9 +91,9 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
     console.note(fmt::format("{}: {}", job.output.string(), warning));
     report.warnings.push_back(warning);
   }
-  if (!job.report.empty()) {
-    const Result<void> done = write_report(job, plan, *result, *written, warnings, console, task.part(0.3, "drawing"));
-    if (!done) return fail(done.error());
+  if (page) {
+    if (const Result<void> done = page->finish(*written); !done) return fail(done.error());
+    console.wrote(job.report.string());
     report.report = job.report.string();
   }
   report.total_seconds = watch.total();

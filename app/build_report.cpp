@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "app/help.h"
-#include "lodestone/base/file.h"
 #include "lodestone/report/ladder_report.h"
 
 namespace lodestone::app {
@@ -13,7 +12,6 @@ namespace lodestone::app {
 std::vector<report::ReportOption> report_options(const Arguments& arguments) {
   constexpr std::array<std::string_view, 2> kNoSay{"--json", "--report"};
   std::vector<report::ReportOption> options;
-  for (const std::string& input : arguments.inputs) options.push_back({"INPUT", input, true});
   for (const OptionGroup& group : arguments.verb->groups) {
     if (group.title == "General") continue;
     for (const OptionSpec& option : group.options) {
@@ -26,23 +24,26 @@ std::vector<report::ReportOption> report_options(const Arguments& arguments) {
   return options;
 }
 
-Result<void> write_report(const BuildJob& job, const BuildPlan& plan, const chain::LadderResult& result,
-                          const io::WriteReport& written, const std::vector<std::string>& warnings, Console& console,
-                          const Task& task) {
-  Result<report::ReportData> data = report::ladder_report(result, written, {}, task);
+Result<ReportPage> ReportPage::draw(const BuildJob& job, const BuildPlan& plan, const chain::LadderResult& result,
+                                    const std::vector<std::string>& warnings, const Task& task) {
+  Result<OutputFile> file = OutputFile::create(job.report);
+  if (!file) return fail(file.error());
+  Result<report::ReportData> data = report::ladder_report(result, {}, task);
   if (!data) return fail(data.error());
   data->name = job.input.filename().string();
   data->unit = unit_name(result.ladder.original.meters_per_unit);
   data->view = plan.view;
   data->options = plan.options;
+  data->options.insert(data->options.begin(), {"INPUT", job.input.string(), true});
   data->version = version();
   data->warnings.insert(data->warnings.end(), warnings.begin(), warnings.end());
-  Result<OutputFile> file = OutputFile::create(job.report);
-  if (!file) return fail(file.error());
-  file->write(std::string_view(report::html_report(*data)));
-  if (Result<void> done = file->commit(); !done) return done;
-  console.wrote(job.report.string());
-  return {};
+  return ReportPage(std::move(*data), std::move(*file));
+}
+
+Result<void> ReportPage::finish(const io::WriteReport& written) {
+  report::add_files(data_, written);
+  file_.write(std::string_view(report::html_report(data_)));
+  return file_.commit();
 }
 
 }  // namespace lodestone::app

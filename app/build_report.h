@@ -1,13 +1,13 @@
 // build --report: a page about the ladder.
 #pragma once
 
-#include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/build_plan.h"
 #include "app/command_line.h"
-#include "app/console.h"
+#include "lodestone/base/file.h"
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
 #include "lodestone/chain/build_ladder.h"
@@ -19,10 +19,20 @@ namespace lodestone::app {
 /// What was typed and what goes without saying, but for what has no say in the result (threads, quiet, JSON).
 std::vector<report::ReportOption> report_options(const Arguments& arguments);
 
-/// Draws the levels and writes job.report whole or not at all. `warnings`: what was told about the model on top of its
-/// own. Errors: those of drawing; cannot_write.
-Result<void> write_report(const BuildJob& job, const BuildPlan& plan, const chain::LadderResult& result,
-                          const io::WriteReport& written, const std::vector<std::string>& warnings, Console& console,
-                          const Task& task);
+/// A page that waits for the levels' files: its pictures are drawn, its file is open. Without finish() nothing of it
+/// stays.
+class ReportPage {
+ public:
+  /// `warnings`: what was told about the model on top of its own. Errors: those of drawing; cannot_write.
+  static Result<ReportPage> draw(const BuildJob& job, const BuildPlan& plan, const chain::LadderResult& result,
+                                 const std::vector<std::string>& warnings, const Task& task);
+  /// Writes it whole. Errors: cannot_write.
+  Result<void> finish(const io::WriteReport& written);
+
+ private:
+  ReportPage(report::ReportData data, OutputFile file) : data_(std::move(data)), file_(std::move(file)) {}
+  report::ReportData data_;
+  OutputFile file_;
+};
 
 }  // namespace lodestone::app

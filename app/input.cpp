@@ -70,7 +70,7 @@ Result<void> check_place(const fs::path& output, const std::vector<fs::path>& in
   for (const fs::path& input : inputs) {
     if (would_overwrite(output, input)) {
       return fail(ErrorCode::bad_argument, "is an input, and inputs are never overwritten", output.string(),
-                  "choose another name for -o");
+                  "choose another name for the output");
     }
   }
   const fs::path folder = output.has_parent_path() ? output.parent_path() : ".";

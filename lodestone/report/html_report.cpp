@@ -58,7 +58,8 @@ std::string summary(const ReportData& data) {
       "{} levels, from {} triangles down to {}. {} the coarsest is nowhere farther than <strong>{}</strong> from the "
       "original: {} of its diagonal.",
       data.levels.size(), with_separators(first.triangles), with_separators(last.triangles),
-      certain ? "Certified:" : "As far as was found,", length(data, last.error.error),
+      certain ? "Certified:" : "As far as was found,",
+      length(data, last.error.error) + (data.unit.empty() ? " model units" : ""),
       percent(last.error.relative(last.error.error)));
 }
 
@@ -195,7 +196,19 @@ std::string options_table(const std::vector<ReportOption>& options, bool given) 
       given ? "Options given" : "Defaults", rows);
 }
 
+bool has_image_figures(const ReportData& data) {
+  return std::any_of(data.levels.begin(), data.levels.end(), [](const ReportLevel& l) { return l.image.has_value(); });
+}
+
 std::string meaning(const ReportData& data) {
+  const std::string image =
+      has_image_figures(data)
+          ? "<dt>silhouette, PSNR, SSIM</dt><dd>Pictures from 20 sides, 512 pixels square, compared with the "
+            "original’s: "
+            "pixels that only one of the two covers as a share of the original’s, signal-to-noise ratio, structural "
+            "similarity (1: the "
+            "same). Of shading and colours the worse. They bound nothing.</dd>\n"
+          : "";
   return fmt::format(
       "<dl>\n"
       "<dt>error</dt><dd>The largest distance from any point of either surface to the other (Hausdorff distance), "
@@ -210,16 +223,13 @@ std::string meaning(const ReportData& data) {
       "<dt>1 px from</dt><dd>From this distance on (to the surface of the sphere around the model) the error covers at "
       "most "
       "one pixel on a screen of {} lines with a vertical field of view of {} degrees. Switch to the level there.</dd>\n"
-      "<dt>silhouette, PSNR, SSIM</dt><dd>Pictures from 20 sides, 512 pixels square, compared with the original’s: "
-      "pixels that only one of the two covers as a share of the original’s, signal-to-noise ratio, structural "
-      "similarity (1: the "
-      "same). Of shading and colours the worse. They bound nothing.</dd>\n"
+      "{}"
       "<dt>heat map</dt><dd>The original’s surface, coloured by the distance to the level: one direction alone, and "
       "only as "
       "fine as the picture. 99 % of the area is nearer than what yellow stands for.</dd>\n"
       "</dl>\n",
       length(data, data.diagonal), with_separators(data.levels.size() > 1 ? data.levels.back().error.samples : 0),
-      number(data.view.height_px), number(data.view.fov_degrees));
+      number(data.view.height_px), number(data.view.fov_degrees), image);
 }
 
 std::string section(const char* id, const char* title, const std::string& content) {
@@ -260,9 +270,9 @@ std::string html_report(const ReportData& data) {
   std::vector<std::string> warnings = data.shortfalls;
   for (std::string& warning : plain_warnings(data)) warnings.push_back(std::move(warning));
   page += section("warnings", "Warnings", list(warnings));
-  page += section("options", "Options",
-                  options_table(data.options, true) + "<details><summary>Defaults</summary>\n" +
-                      options_table(data.options, false) + "</details>\n");
+  page += section(
+      "options", "Options",
+      options_table(data.options, true) + "<h3 class=\"more\">Defaults</h3>\n" + options_table(data.options, false));
   page += section("meaning", "What it means", meaning(data));
   page +=
       "</main>\n<footer class=\"wide\">Made by lod build --report. Nothing on this page was loaded from "

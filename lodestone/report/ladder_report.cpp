@@ -25,14 +25,12 @@ std::uint64_t seam_vertices(const Model& model) {
 
 }  // namespace
 
-Result<ReportData> ladder_report(const chain::LadderResult& result, const io::WriteReport& written,
-                                 const PictureOptions& pictures, Task task) {
+Result<ReportData> ladder_report(const chain::LadderResult& result, const PictureOptions& pictures, Task task) {
   const Ladder& ladder = result.ladder;
   ReportData data;
   data.diagonal = ladder.levels.front().error.diagonal;
   data.seam_vertices = seam_vertices(ladder.original);
   data.warnings = ladder.original.warnings;
-  data.warnings.insert(data.warnings.end(), written.warnings.begin(), written.warnings.end());
   for (const chain::Shortfall& shortfall : result.shortfalls) {
     data.shortfalls.push_back(fmt::format("Level {}: {}.", shortfall.level, shortfall.reason));
   }
@@ -45,14 +43,20 @@ Result<ReportData> ladder_report(const chain::LadderResult& result, const io::Wr
     level.error = ladder.levels[i].error;
     level.shape = *shape;
     if (i < result.images.size()) level.image = result.images[i];
-    level.bytes = written.level_bytes[i];
-    level.file = written.files[i].filename().string();
     data.levels.push_back(std::move(level));
   }
   Result<std::vector<LevelPictures>> drawn = draw_levels(ladder, pictures, task.part(0.8));
   if (!drawn) return fail(drawn.error());
   data.pictures = std::move(*drawn);
   return data;
+}
+
+void add_files(ReportData& data, const io::WriteReport& written) {
+  for (std::size_t i = 0; i < data.levels.size(); ++i) {
+    data.levels[i].bytes = written.level_bytes[i];
+    data.levels[i].file = written.files[i].filename().string();
+  }
+  data.warnings.insert(data.warnings.end(), written.warnings.begin(), written.warnings.end());
 }
 
 }  // namespace lodestone::report

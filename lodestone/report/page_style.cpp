@@ -41,9 +41,9 @@ figcaption { color: var(--soft); font-size: 14px; margin-top: 6px; }
 .zoom input { position: absolute; opacity: 0; width: 100%; height: 100%; margin: 0; cursor: inherit; }
 .zoom img { display: block; width: 100%; height: auto; border-radius: 6px; background: #eceef1; }
 .zoom input:focus-visible + img { outline: 3px solid var(--accent); outline-offset: 3px; }
-.zoom input:checked { z-index: 11; position: fixed; inset: 0; width: 100vw; height: 100vh; cursor: zoom-out; }
+@media screen { .zoom input:checked { z-index: 11; position: fixed; inset: 0; width: 100vw; height: 100vh; cursor: zoom-out; }
 .zoom input:checked + img { position: fixed; inset: 0; width: 100vw; height: 100vh; object-fit: contain; z-index: 10; border-radius: 0;
-  background: rgba(10, 12, 14, .92); }
+  background: rgba(10, 12, 14, .92); } }
 .none { display: grid; place-items: center; aspect-ratio: 4 / 3; border: 1px dashed var(--line); border-radius: 6px; color: var(--soft);
   font-size: 14px; padding: 16px; text-align: center; }
 .legend { max-width: 420px; margin: 0 0 20px; font-size: 14px; color: var(--soft); }
@@ -59,7 +59,8 @@ figcaption { color: var(--soft); font-size: 14px; margin-top: 6px; }
 .line-3 { color: var(--c3); } .line-4 { color: var(--c4); } .line-5 { color: var(--c5); }
 .warnings { background: var(--warn); border: 1px solid var(--line); border-radius: 8px; padding: 14px 14px 14px 34px; margin: 0; }
 .warnings li { margin: 4px 0; overflow-wrap: anywhere; }
-details summary { cursor: pointer; padding: 8px 0; color: var(--accent); }
+h3.more { margin-top: 22px; }
+@media screen and (max-width: 560px) { .plot { font-size: 22px; } }
 dt { font-weight: 600; margin-top: 12px; } dd { margin: 2px 0 0; }
 footer { color: var(--soft); font-size: 14px; }
 footer.wide { padding-top: 44px; padding-bottom: 36px; }

@@ -11,7 +11,8 @@ namespace lodestone::report::detail {
 namespace {
 
 std::string figure(const Plot& plot, const std::string& caption) {
-  return "<figure>" + svg_of(plot) + "<figcaption>" + caption + "</figcaption></figure>\n";
+  return fmt::format("<figure>{}<figcaption><strong>{}.</strong> {}</figcaption></figure>\n", svg_of(plot),
+                     escaped(plot.title), caption);
 }
 
 std::string with_unit(const ReportData& data, const std::string& title) {
@@ -53,6 +54,9 @@ Plot pixel_plot(const ReportData& data) {
     }
     plot.lines.push_back(std::move(line));
   }
+  if (plot.lines.empty()) return plot;
+  const double nearest = plot.lines.front().points.front().x, farthest = plot.lines.back().points.back().x;
+  plot.lines.push_back({"one pixel", {{nearest, 1}, {farthest, 1}}, "", true});
   return plot;
 }
 

@@ -12,7 +12,7 @@ namespace lodestone::report {
 
 namespace {
 
-constexpr double kWidth = 640, kHeight = 400, kLeft = 84, kRight = 24, kTop = 16, kBottom = 56;
+constexpr double kWidth = 640, kHeight = 400, kLeft = 84, kRight = 24, kTop = 38, kBottom = 56;
 constexpr std::size_t kColors = 6;
 
 struct Axis {
@@ -76,10 +76,8 @@ void add_axes(std::string& svg, const Plot& plot, const Axis& x, const Axis& y) 
                      kWidth - kRight);
   svg += fmt::format(R"(<text class="label" x="{:.1f}" y="{:.1f}" text-anchor="middle">{}</text>)",
                      (kLeft + kWidth - kRight) / 2, kHeight - 14, escaped(plot.x_label));
-  const double middle = (kTop + kHeight - kBottom) / 2;
-  svg += fmt::format(
-      R"svg(<text class="label" x="18" y="{0:.1f}" text-anchor="middle" transform="rotate(-90 18 {0:.1f})">{1}</text>)svg",
-      middle, escaped(plot.y_label));
+  // Above its axis, not turned: that takes no width from narrow screens.
+  svg += fmt::format(R"(<text class="label" x="8" y="20">{}</text>)", escaped(plot.y_label));
 }
 
 void add_line(std::string& svg, const PlotLine& line, std::size_t number, const Axis& x, const Axis& y) {
@@ -101,14 +99,14 @@ void add_line(std::string& svg, const PlotLine& line, std::size_t number, const 
 }
 
 void add_key(std::string& svg, const Plot& plot) {
-  double y = kTop + 14;
+  double y = kTop + 16;
   for (std::size_t i = 0; i < plot.lines.size(); ++i) {
     if (plot.lines[i].name.empty() || !plot.lines[i].label.empty()) continue;
     svg += fmt::format(R"(<g class="line-{}"><path d="M{:.1f} {:.1f}h24"{}/></g>)", i % kColors, kWidth - kRight - 180,
                        y - 4, plot.lines[i].dashed ? R"( stroke-dasharray="6 4")" : "");
     svg += fmt::format(R"(<text class="key" x="{:.1f}" y="{:.1f}">{}</text>)", kWidth - kRight - 148, y,
                        escaped(plot.lines[i].name));
-    y += 18;
+    y += 24;  // room for large letters
   }
 }
 

@@ -87,6 +87,20 @@ class Interrupt(Scratch):
                     self.assertEqual(len(err.splitlines()), 1, err)
                     self.assertEqual(self.files(), ["statue.ply"])
 
+    def test_report_and_levels_come_together_or_not_at_all(self):
+        """Wherever the signal finds it, most often while levels are drawn."""
+        for wait in (1.2, 2.0, 2.8):
+            with self.subTest(wait):
+                process = subprocess.Popen([lod_path(), "build", "statue.ply", "-o", "x.glb", "--report", "x.html", "--levels", "3"],
+                                           cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                time.sleep(wait)
+                process.send_signal(signal.SIGINT)
+                process.communicate(timeout=60)
+                there = {0: ["statue.ply", "x.glb", "x.html"], 130: ["statue.ply"]}
+                self.assertEqual(self.files(), there[process.returncode])
+                for name in ("x.glb", "x.html"):
+                    (self.folder / name).unlink(missing_ok=True)
+
     def stop_at_once(self, *numbers):
         """Sends signals that all arrive together, as the process sleeps until the last is sent."""
         process = subprocess.Popen([lod_path(), "build", "statue.ply", "-o", "x_LOD{level}.obj", "--samples", "20000000"],

@@ -69,6 +69,7 @@ async function checkLayout(page, where, smallestFont = 12) {
     nameless: [...document.querySelectorAll("a, input, summary, [role=region]")].filter((e) =>
       !(e.textContent.trim() || e.getAttribute("aria-label"))).length,
     anchors: [...document.querySelectorAll('a[href^="#"]')].filter((a) => !document.querySelector(a.getAttribute("href"))).length,
+    plotText: Math.min(...[...document.querySelectorAll("svg.plot text")].map((e) => e.getBoundingClientRect().height)),
     plots: [...document.querySelectorAll("svg.plot")].map((s) => [s.querySelectorAll("circle").length, s.getBoundingClientRect().width]),
   }), smallestFont);
   if (found.wide > 0) complain(`${where}: the page is ${found.wide} pixels too wide`);
@@ -76,6 +77,7 @@ async function checkLayout(page, where, smallestFont = 12) {
   if (found.noAlt + found.nameless + found.small + found.anchors > 0 || found.headings !== 1 || found.lang !== "en") {
     complain(`${where}: not accessible: ${JSON.stringify(found)}`);
   }
+  if (found.plotText < 9) complain(`${where}: the plots' text is ${found.plotText} pixels high`);
   if (found.plots.length !== 3 || found.plots.some(([dots, width]) => dots < 2 || width < 200)) {
     complain(`${where}: plots ${JSON.stringify(found.plots)}`);
   }
@@ -125,7 +127,7 @@ async function checkKeyboard(page) {
   if (Math.abs((await width()) - before) > 1) complain("keyboard: an enlarged picture stays");
 }
 
-const browser = await driver.launch({ executablePath: chromium, args: ["--no-sandbox", "--disable-gpu"], timeout: 60000 });
+const browser = await driver.launch({ executablePath: chromium, args: [...(process.getuid() === 0 ? ["--no-sandbox"] : []), "--disable-gpu"], timeout: 60000 });
 try {
   const desk = await open(browser, { viewport: { width: 1280, height: 900 } });
   await checkLayout(desk.page, "desk");
