@@ -49,6 +49,10 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   if (!model) return fail(model.error());
   const Result<void> kept = io::check_replaced(*model, job.output, planned_levels(plan));
   if (!kept) return fail(kept.error());
+  if (!job.report.empty()) {
+    if (const Result<void> page_kept = io::check_replaced(*model, job.report); !page_kept)
+      return fail(page_kept.error());
+  }
   apply_unit(*model, plan.lengths);
   report.read_seconds = watch.lap();
   report.triangles = drawn_triangles(*model);

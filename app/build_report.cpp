@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <string_view>
+#include <utility>
 
 #include "app/help.h"
 #include "lodestone/report/ladder_report.h"
@@ -18,7 +20,10 @@ std::vector<report::ReportOption> report_options(const Arguments& arguments) {
       if (std::find(kNoSay.begin(), kNoSay.end(), option.name) != kNoSay.end()) continue;
       const bool given = arguments.has(option.name);
       if (!given && option.default_value.empty()) continue;
-      options.push_back({option.name, arguments.text(option.name), given});
+      std::string value = arguments.text(option.name);
+      // Pages are passed on: what folders are called is nobody else's business.
+      if (option.completion == Completion::file) value = std::filesystem::path(value).filename().string();
+      options.push_back({option.name, std::move(value), given});
     }
   }
   return options;
@@ -34,7 +39,7 @@ Result<ReportPage> ReportPage::draw(const BuildJob& job, const BuildPlan& plan, 
   data->unit = unit_name(result.ladder.original.meters_per_unit);
   data->view = plan.view;
   data->options = plan.options;
-  data->options.insert(data->options.begin(), {"INPUT", job.input.string(), true});
+  data->options.insert(data->options.begin(), {"INPUT", job.input.filename().string(), true});
   data->version = version();
   data->warnings.insert(data->warnings.end(), warnings.begin(), warnings.end());
   return ReportPage(std::move(*data), std::move(*file));

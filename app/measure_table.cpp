@@ -75,10 +75,9 @@ std::string table_of(const measure::ImageDeviation& image) {
 
 std::string line_of(const HeatReport& heat, const std::string& unit) {
   const std::string units = unit.empty() ? "" : " " + unit;
-  return fmt::format(
-      "\n{}: A by its distance to B, colours from 0 to {}{} (99 % of the area), farthest vertex {}{}, {} triangles\n",
-      printable(heat.file), short_number(heat.range), units, short_number(heat.largest), units,
-      with_separators(heat.triangles));
+  return fmt::format("\n{}: A by its distance to B, colours from 0 to {}{}, farthest vertex {}{}, {} triangles\n",
+                     printable(heat.file), short_number(heat.range), units, short_number(heat.largest), units,
+                     with_separators(heat.triangles));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,7 +22,8 @@ namespace {
 using detail::Side;
 
 constexpr std::size_t kChunk = 4096;
-constexpr int kMostRounds = 8;  // of splitting: a side becomes 1/256 of what it was
+constexpr double kNothing = 1e-9;  // of the diagonal: rounding
+constexpr int kMostRounds = 8;     // of splitting: a side becomes 1/256 of what it was
 
 // The surface while it is split, with the distance of each vertex.
 struct Field {
@@ -74,11 +76,18 @@ std::vector<std::uint32_t> new_triangles(const Field& field, double shortest) {
   return out;
 }
 
-// The sides to be split: those whose middle, and those of triangles whose centre, the corners don't tell.
-std::vector<Side> sides_to_split(const Field& field, const spatial::Bvh& to, double shortest, double tolerance,
-                                 double& largest, const Task& task) {
-  const std::vector<Side> sides = new_sides(field, shortest, task);
-  const std::vector<std::uint32_t> triangles = new_triangles(field, shortest);
+struct SplitRules {
+  double shortest, longest;  // sides, model units
+  double tolerance;          // of the largest distance
+  double nothing;            // distances below are rounding
+};
+
+// The sides to be split: those whose middle, and those of triangles whose centre, the corners don't tell; and long
+// ones.
+std::vector<Side> sides_to_split(const Field& field, const spatial::Bvh& to, const SplitRules& rules, double& largest,
+                                 const Task& task) {
+  const std::vector<Side> sides = new_sides(field, rules.shortest, task);
+  const std::vector<std::uint32_t> triangles = new_triangles(field, rules.shortest);
   std::vector<Vec3d> points;
   points.reserve(sides.size() + triangles.size());
   for (const Side& side : sides) points.push_back(detail::middle_of(field.positions, side));
@@ -90,10 +99,11 @@ std::vector<Side> sides_to_split(const Field& field, const spatial::Bvh& to, dou
   largest = std::max(largest, largest_of(found));
 
   std::vector<Side> out;
-  const double most = tolerance * largest;
+  const double most = std::max(rules.tolerance * largest, rules.nothing);
   const std::vector<double>& d = field.distance;
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    if (std::abs(found[i] - (d[sides[i].low] + d[sides[i].high]) / 2) > most) out.push_back(sides[i]);
+    const bool is_long = length(field.positions[sides[i].low] - field.positions[sides[i].high]) > rules.longest;
+    if (is_long || std::abs(found[i] - (d[sides[i].low] + d[sides[i].high]) / 2) > most) out.push_back(sides[i]);
   }
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const Triangle& t = field.triangles[triangles[i]];
@@ -107,11 +117,11 @@ std::vector<Side> sides_to_split(const Field& field, const spatial::Bvh& to, dou
 // Splits until straight lines between the vertices tell the distance.
 void refine(Field& field, const spatial::Bvh& to, double diagonal, const HeatOptions& options, double& largest,
             const Task& task) {
-  const double shortest = options.shortest_side * diagonal;
+  const SplitRules rules{options.shortest_side * diagonal, options.longest_side * diagonal, options.tolerance,
+                         kNothing * diagonal};
   for (int round = 0; round < kMostRounds && !task.cancelled(); ++round) {
-    const std::vector<Side> sides = sides_to_split(field, to, shortest, options.tolerance, largest, task);
-    // Distances this small are rounding.
-    if (sides.empty() || largest < 1e-9 * diagonal) return;
+    const std::vector<Side> sides = sides_to_split(field, to, rules, largest, task);
+    if (sides.empty()) return;
     std::vector<Triangle> split = detail::split_sides(field.triangles, sides, field.positions.size());
     if (split.size() > options.most_triangles) return;
     field.triangles = std::move(split);
@@ -123,27 +133,41 @@ void refine(Field& field, const spatial::Bvh& to, double diagonal, const HeatOpt
   }
 }
 
-// The distance that `share` of the area is nearer than, a triangle taken as its mean.
-double area_percentile(const Field& field, double share, const Task& task) {
-  struct Part {
-    double distance, area;
+// Which share of a triangle's area is nearer than `distance`, linear between its corners.
+double share_below(double distance, double a, double b, double c) {
+  if (a > b) std::swap(a, b);
+  if (b > c) std::swap(b, c);
+  if (a > b) std::swap(a, b);
+  if (distance <= a) return 0;
+  if (distance >= c) return 1;
+  if (distance < b) return (distance - a) * (distance - a) / ((b - a) * (c - a));
+  return 1 - (c - distance) * (c - distance) / ((c - b) * (c - a));
+}
+
+// The distance that `share` of the area is nearer than, by halving; the largest where there is no area.
+double area_percentile(const Field& field, double share, double largest, const Task& task) {
+  const auto area_below = [&](double distance) {
+    return parallel_reduce(
+        field.triangles.size(), kChunk * 16, task, 0.0,
+        [&](std::size_t begin, std::size_t end) {
+          double sum = 0;
+          for (std::size_t i = begin; i < end; ++i) {
+            const Triangle& t = field.triangles[i];
+            const Vec3d a = field.positions[t[0]], b = field.positions[t[1]], c = field.positions[t[2]];
+            sum += length(cross(b - a, c - a)) *
+                   share_below(distance, field.distance[t[0]], field.distance[t[1]], field.distance[t[2]]);
+          }
+          return sum;
+        },
+        [](double a, double b) { return a + b; });
   };
-  std::vector<Part> parts(field.triangles.size());
-  double total = 0;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const Triangle& t = field.triangles[i];
-    const Vec3d a = field.positions[t[0]], b = field.positions[t[1]], c = field.positions[t[2]];
-    parts[i] = {(field.distance[t[0]] + field.distance[t[1]] + field.distance[t[2]]) / 3,
-                length(cross(b - a, c - a)) / 2};
-    total += parts[i].area;
+  const double total = area_below(std::numeric_limits<double>::infinity());
+  double low = 0, high = largest;
+  for (int round = 0; round < 24 && total > 0; ++round) {
+    const double middle = (low + high) / 2;
+    (area_below(middle) < share * total ? low : high) = middle;
   }
-  parallel_sort(parts, task, [](const Part& a, const Part& b) { return a.distance < b.distance; });
-  double below = 0;
-  for (const Part& part : parts) {
-    below += part.area;
-    if (below >= share * total) return part.distance;
-  }
-  return 0;
+  return high;
 }
 
 Mesh mesh_of(Field field, Vec3d offset, double range, bool linear_colors) {
@@ -187,8 +211,9 @@ Result<Heat> heat_map(const Model& a, const Model& b, const HeatOptions& options
   refine(field, to, diagonal, options, largest, task);
   if (task.cancelled()) return cancelled_error("heat map");
   heat.largest = largest_of(field.distance);
-  heat.percentile_99 = area_percentile(field, 0.99, task);
-  heat.range = options.range > 0 ? options.range : heat.percentile_99;
+  heat.percentile_99 = area_percentile(field, 0.99, heat.largest, task);
+  // What is nothing but rounding gets no colours, and few places that are far off don't leave all else to rounding.
+  heat.range = heat.largest > kNothing * diagonal ? std::max(heat.percentile_99, heat.largest / 20) : 0;
   heat.model = make_model(mesh_of(std::move(field), offset, heat.range, options.linear_colors));
   heat.model.meters_per_unit = a.meters_per_unit;
   return heat;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "lodestone/base/base64.h"
 #include "lodestone/base/units.h"
@@ -52,8 +53,7 @@ std::string summary(const ReportData& data) {
     return fmt::format("No level could be made from its {} triangles.", with_separators(data.levels.front().triangles));
   }
   const ReportLevel &first = data.levels.front(), &last = data.levels.back();
-  const bool certain = std::all_of(data.levels.begin(), data.levels.end(),
-                                   [](const ReportLevel& l) { return l.error.kind == ErrorKind::bounded; });
+  const bool certain = last.error.kind == ErrorKind::bounded;
   return fmt::format(
       "{} levels, from {} triangles down to {}. {} the coarsest is nowhere farther than <strong>{}</strong> from the "
       "original: {} of its diagonal.",
@@ -167,8 +167,10 @@ std::string pictures(const ReportData& data) {
       html += "<figure><div class=\"none\">The original: no distance to itself</div></figure>\n";
     } else {
       html += shot(shots.heat, "the original, coloured by its distance to " + name,
-                   fmt::format("The original by its distance to this level: dark 0, yellow {} or more",
-                               length(data, shots.heat_range)));
+                   shots.heat_range > 0
+                       ? fmt::format("The original by its distance to this level: dark 0, yellow {} or more",
+                                     length(data, shots.heat_range))
+                       : "No distance to this level but rounding");
     }
     html += "</div></article>\n";
   }
@@ -200,6 +202,13 @@ bool has_image_figures(const ReportData& data) {
   return std::any_of(data.levels.begin(), data.levels.end(), [](const ReportLevel& l) { return l.image.has_value(); });
 }
 
+// A direction; ladders take more where chance would make the mean.
+std::uint64_t least_samples(const ReportData& data) {
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+  for (std::size_t i = 1; i < data.levels.size(); ++i) least = std::min(least, data.levels[i].error.samples);
+  return data.levels.size() > 1 ? least : 0;
+}
+
 std::string meaning(const ReportData& data) {
   const std::string image =
       has_image_figures(data)
@@ -218,7 +227,8 @@ std::string meaning(const ReportData& data) {
       "largest distance that was met; the true one may be larger. It says nothing about normals, textures or "
       "colours.</dd>\n"
       "<dt>relative</dt><dd>The error divided by the diagonal of the original’s bounding box, {}.</dd>\n"
-      "<dt>mean, rms</dt><dd>Over {} points spread evenly over each surface; both directions count alike. They bound "
+      "<dt>mean, rms</dt><dd>Over at least {} points spread evenly over each surface; both directions count alike. "
+      "They bound "
       "nothing.</dd>\n"
       "<dt>1 px from</dt><dd>From this distance on (to the surface of the sphere around the model) the error covers at "
       "most "
@@ -226,10 +236,11 @@ std::string meaning(const ReportData& data) {
       "{}"
       "<dt>heat map</dt><dd>The original’s surface, coloured by the distance to the level: one direction alone, and "
       "only as "
-      "fine as the picture. 99 % of the area is nearer than what yellow stands for.</dd>\n"
+      "fine as the picture. 99 % of the area is nearer than what yellow stands for, but where few places are far "
+      "off.</dd>\n"
       "</dl>\n",
-      length(data, data.diagonal), with_separators(data.levels.size() > 1 ? data.levels.back().error.samples : 0),
-      number(data.view.height_px), number(data.view.fov_degrees), image);
+      length(data, data.diagonal), with_separators(least_samples(data)), number(data.view.height_px),
+      number(data.view.fov_degrees), image);
 }
 
 std::string section(const char* id, const char* title, const std::string& content) {

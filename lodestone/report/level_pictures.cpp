@@ -22,7 +22,7 @@ Result<std::string> draw_heat(const Model& original, const Model& level, const C
   coarse.shortest_side = 0.005;  // three pixels or so
   const Result<measure::Heat> heat = measure::heat_map(original, level, coarse, task.part(0.7));
   if (!heat) return fail(heat.error());
-  range = heat->percentile_99;
+  range = heat->range;
   render::SceneOptions values;
   values.attribute = "_ERROR";
   const Result<render::Scene> scene = render::Scene::create(heat->model, values, task.part(0.2));

@@ -23,7 +23,7 @@ struct LevelPictures {
   std::string shaded;     ///< with textures or vertex colours where there are some
   std::string wireframe;  ///< grey, with the triangles' sides
   std::string heat;       ///< the original's surface by its distance to this level; empty for the original
-  double heat_range = 0;  ///< distance of heat's last colour: 99 % of the original's area is nearer; model units
+  double heat_range = 0;  ///< distance of heat's last colour, as Heat::range; model units
 };
 
 /// Drawn one after the other, so memory is that of the largest. The original's textures must be decoded before

@@ -21,6 +21,18 @@ class Report(Scratch):
             pages.append((self.folder / "s.html").read_bytes())
         self.assertEqual(pages[0], pages[1])
 
+    def test_folders_are_not_told_and_files_of_the_input_stay(self):
+        self.lod("build", self.folder / "statue.ply", "-o", self.folder / "s.glb", "--levels", "2", "--report", self.folder / "s.html")
+        self.assertNotIn(str(self.folder), (self.folder / "s.html").read_text())
+        self.lod("convert", "statue.ply", "p.gltf")
+        (self.folder / "p.bin").rename(self.folder / "page.html")
+        text = (self.folder / "p.gltf").read_text().replace("p.bin", "page.html")
+        (self.folder / "p.gltf").write_text(text)
+        before = (self.folder / "page.html").read_bytes()
+        done = self.lod("build", "p.gltf", "-o", "p.glb", "--report", "page.html", code=1)
+        self.assertIn("page.html", done.stderr)
+        self.assertEqual((self.folder / "page.html").read_bytes(), before)
+
     def test_batches(self):
         (self.folder / "models").mkdir()
         for name in ("a", "b"):

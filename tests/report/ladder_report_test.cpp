@@ -62,6 +62,8 @@ TEST(LadderReport, warnings_in_plain_words) {
   ASSERT_EQ(told.size(), 2U);
   EXPECT_TRUE(has(told[0], "level 1") && has(told[0], "not certified"));
   EXPECT_TRUE(has(told[1], "Level 2 has 0 of the original's 1 pieces"));
+  EXPECT_TRUE(has(html_report(uncertain), "Certified:")) << "that is about the coarsest";
+  uncertain.levels[2].error.kind = ErrorKind::measured;
   EXPECT_TRUE(has(html_report(uncertain), "As far as was found,"));
 }
 
