@@ -4,6 +4,7 @@
 #include <new>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "app/build_plan.h"
 #include "app/build_report.h"
@@ -96,7 +97,11 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
     report.warnings.push_back(warning);
   }
   if (page) {
-    if (const Result<void> done = page->finish(*written); !done) return fail(done.error());
+    if (const Result<void> done = page->finish(*written); !done) {
+      Error error = done.error();
+      error.remedy = "the levels are written, the page is not";
+      return fail(std::move(error));
+    }
     console.wrote(job.report.string());
     report.report = job.report.string();
   }
