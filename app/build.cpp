@@ -42,36 +42,72 @@ void add_levels(BuildReport& report, const chain::LadderResult& result, const io
   report.total_bytes = written.total_bytes;
 }
 
-Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Console& console, const Task& task) {
-  Stopwatch watch;
-  BuildReport report;
+// Reads the input and begins the report; nothing that belongs to the input may be replaced.
+Result<Model> read_job(const BuildJob& job, const BuildPlan& plan, BuildReport& report, const Console& console,
+                       const Task& task) {
   report.input = job.input.string();
-  Result<Model> model = read_input(job.input, console, task.part(0.1, "reading"), {.levels = false});
-  if (!model) return fail(model.error());
-  const Result<void> kept = io::check_replaced(*model, job.output, planned_levels(plan));
+  Result<Model> model = read_input(job.input, console, task, {.levels = false});
+  if (!model) return model;
+  Result<void> kept = io::check_replaced(*model, job.output, planned_levels(plan));
+  if (kept && !job.report.empty()) kept = io::check_replaced(*model, job.report);
   if (!kept) return fail(kept.error());
-  if (!job.report.empty()) {
-    if (const Result<void> page_kept = io::check_replaced(*model, job.report); !page_kept)
-      return fail(page_kept.error());
-  }
   apply_unit(*model, plan.lengths);
-  report.read_seconds = watch.lap();
   report.triangles = drawn_triangles(*model);
   report.diagonal = bounds_of(*model).diagonal();
   report.unit = unit_name(model->meters_per_unit);
   report.warnings = model->warnings;
+  return model;
+}
 
-  std::vector<std::string> notes, warnings;
-  const Result<chain::LadderOptions> options = ladder_options(plan, *model, notes, warnings);
-  if (!options) return fail(options.error());
+// What was asked, for this model, and its textures where pictures are drawn. What a user should know is told.
+Result<chain::LadderOptions> prepare_job(const BuildPlan& plan, Model& model, BuildReport& report,
+                                         std::vector<std::string>& warnings, const Console& console, const Task& task) {
+  std::vector<std::string> notes;
+  Result<chain::LadderOptions> options = ladder_options(plan, model, notes, warnings);
+  if (!options) return options;
   if (plan.image_error || plan.report) {
-    const Result<void> decoded = io::decode_base_colors(*model, warnings, task);
+    const Result<void> decoded = io::decode_base_colors(model, warnings, task);
     if (!decoded) return fail(decoded.error());
   }
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
   notes.insert(notes.end(), warnings.begin(), warnings.end());
   for (const std::string& note : notes) console.note(fmt::format("{}: {}", report.input, note));
-  Result<chain::LadderResult> result =
+  return options;
+}
+
+// Levels first, then the page that tells of them.
+Result<void> write_job(const BuildJob& job, const BuildPlan& plan, const chain::LadderResult& result,
+                       std::optional<ReportPage>& page, BuildReport& report, Console& console, const Task& task) {
+  const io::WriteOptions write{plan.compression, chain::screen_coverages(result.ladder, plan.view)};
+  const Result<io::WriteReport> written = io::write_ladder(result.ladder, job.output, write, task);
+  if (!written) return fail(written.error());
+  for (const fs::path& file : written->files) console.wrote(file.string());
+  add_levels(report, result, *written, plan);
+  for (const std::string& warning : written->warnings) {
+    console.note(fmt::format("{}: {}", job.output.string(), warning));
+    report.warnings.push_back(warning);
+  }
+  if (!page) return {};
+  if (const Result<void> done = page->finish(*written); !done) {
+    Error error = done.error();
+    error.remedy = "the levels are written, the page is not";
+    return fail(std::move(error));
+  }
+  console.wrote(job.report.string());
+  report.report = job.report.string();
+  return {};
+}
+
+Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Console& console, const Task& task) {
+  Stopwatch watch;
+  BuildReport report;
+  std::vector<std::string> warnings;  // on top of the model's own
+  Result<Model> model = read_job(job, plan, report, console, task.part(0.1, "reading"));
+  if (!model) return fail(model.error());
+  report.read_seconds = watch.lap();
+  const Result<chain::LadderOptions> options = prepare_job(plan, *model, report, warnings, console, task);
+  if (!options) return fail(options.error());
+  const Result<chain::LadderResult> result =
       chain::build_ladder(std::move(*model), *options, task.part(plan.report ? 0.5 : 0.8, "making levels"));
   if (!result) return fail(result.error());
   report.levels_seconds = result->simplify_seconds;
@@ -79,32 +115,15 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   report.shortfalls = result->shortfalls;
 
   std::optional<ReportPage> page;  // drawn before anything is written, so that an interrupted run leaves nothing
-  if (!job.report.empty()) {
+  if (plan.report) {
     Result<ReportPage> drawn = ReportPage::draw(job, plan, *result, warnings, task.part(0.3, "drawing"));
     if (!drawn) return fail(drawn.error());
     page.emplace(std::move(*drawn));
   }
   watch.lap();
-  const io::WriteOptions write{plan.compression, chain::screen_coverages(result->ladder, plan.view)};
-  const Result<io::WriteReport> written =
-      io::write_ladder(result->ladder, job.output, write, task.part(0.1, "writing"));
+  const Result<void> written = write_job(job, plan, *result, page, report, console, task.part(0.1, "writing"));
   if (!written) return fail(written.error());
-  for (const fs::path& file : written->files) console.wrote(file.string());
   report.write_seconds = watch.lap();
-  add_levels(report, *result, *written, plan);
-  for (const std::string& warning : written->warnings) {
-    console.note(fmt::format("{}: {}", job.output.string(), warning));
-    report.warnings.push_back(warning);
-  }
-  if (page) {
-    if (const Result<void> done = page->finish(*written); !done) {
-      Error error = done.error();
-      error.remedy = "the levels are written, the page is not";
-      return fail(std::move(error));
-    }
-    console.wrote(job.report.string());
-    report.report = job.report.string();
-  }
   report.total_seconds = watch.total();
   report.peak_memory_bytes = peak_memory_bytes();
   return report;
@@ -121,11 +140,10 @@ Result<BuildReport> build_within_memory(const BuildJob& job, const BuildPlan& pl
   }
 }
 
-// Of shading and colours the figure that is worse.
 void add_cells(std::vector<std::string>& row, const measure::ImageDeviation& image) {
   row.push_back(percent(image.silhouette_mean));
-  row.push_back(fmt::format("{:.1f} dB", std::min(image.shading_psnr, image.color_psnr)));
-  row.push_back(fmt::format("{:.4f}", std::min(image.shading_ssim, image.color_ssim)));
+  row.push_back(fmt::format("{:.1f} dB", image.worse_psnr()));
+  row.push_back(fmt::format("{:.4f}", image.worse_ssim()));
 }
 
 std::string table_of(const BuildReport& report, const BuildPlan& plan) {
@@ -166,9 +184,14 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
     out = fmt::format("{} -> {} ... {}\n{}", printable(report.input), printable(report.levels.front().file),
                       printable(report.levels.back().file), table.text());
   }
-  out += all_certain ? "errors are certified: no point of either surface is farther from the other\n"
-                     : "errors are certified, but for those with ~: the largest that was found\n";
-  if (pictures) out += "silhouette, PSNR, SSIM: pictures from 20 sides compared with the original's\n";
+  if (report.levels.size() > 1) {
+    out += all_certain ? "errors are certified: no point of either surface is farther from the other\n"
+                       : "errors are certified, but for those with ~: the largest that was found\n";
+  }
+  if (pictures) {
+    out += fmt::format("silhouette, PSNR, SSIM: pictures from {} sides compared with the original's\n",
+                       report.levels.front().image->views);
+  }
   return out + fmt::format(
                    "{} in all, {} s; 1 px from: the distance from which the error is at most a pixel ({} lines, {} "
                    "degrees)\n",

@@ -10,7 +10,7 @@
 #include "app/influence.h"
 #include "app/input.h"
 #include "app/text.h"
-#include "lodestone/base/text.h"
+#include "lodestone/base/file.h"
 #include "lodestone/base/units.h"
 
 namespace lodestone::app {
@@ -166,8 +166,11 @@ Result<void> check_outputs(const BuildJobs& all, const std::vector<fs::path>& in
   for (const BuildJob& job : all.jobs) {
     Result<void> checked = check_output(job.output, inputs, compression);
     if (checked) checked = io::check_ladder_name(job.output, compression);
-    if (checked && !job.report.empty()) checked = check_place(job.report, inputs);
     if (!checked && (folder_exists || checked.error().code == ErrorCode::bad_argument)) return checked;
+    if (job.report.empty()) continue;
+    checked = check_place(job.report, inputs);
+    const bool in_folder = !folder_exists && job.report.parent_path() == job.output.parent_path();
+    if (!checked && (!in_folder || checked.error().code == ErrorCode::bad_argument)) return checked;
   }
   return {};
 }
@@ -176,7 +179,7 @@ Result<void> check_outputs(const BuildJobs& all, const std::vector<fs::path>& in
 Result<std::string> report_pattern(const Arguments& arguments, bool batch) {
   if (!arguments.has("--report")) return std::string();
   std::string report = arguments.text("--report");
-  const std::string ending = lower_case(fs::path(report).extension().string());
+  const std::string ending = extension_of(report);
   if (ending != ".html" && ending != ".htm") {
     return fail(ErrorCode::bad_argument, "--report is a page, its name must end in .html", report);
   }

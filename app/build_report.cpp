@@ -11,6 +11,18 @@
 
 namespace lodestone::app {
 
+namespace {
+
+// Defaults that another option puts out of use.
+bool applies(std::string_view option, const Arguments& arguments) {
+  if (option == "--pixels") return arguments.has("--distances");
+  if (option != "--levels") return true;
+  constexpr std::array<std::string_view, 4> kOtherTargets{"--ratio", "--triangles", "--error", "--distances"};
+  return std::none_of(kOtherTargets.begin(), kOtherTargets.end(), [&](auto target) { return arguments.has(target); });
+}
+
+}  // namespace
+
 std::vector<report::ReportOption> report_options(const Arguments& arguments) {
   constexpr std::array<std::string_view, 2> kNoSay{"--json", "--report"};
   std::vector<report::ReportOption> options;
@@ -19,7 +31,7 @@ std::vector<report::ReportOption> report_options(const Arguments& arguments) {
     for (const OptionSpec& option : group.options) {
       if (std::find(kNoSay.begin(), kNoSay.end(), option.name) != kNoSay.end()) continue;
       const bool given = arguments.has(option.name);
-      if (!given && option.default_value.empty()) continue;
+      if (!given && (option.default_value.empty() || !applies(option.name, arguments))) continue;
       std::string value = arguments.text(option.name);
       // Pages are passed on: what folders are called is nobody else's business.
       if (option.completion == Completion::file) value = std::filesystem::path(value).filename().string();

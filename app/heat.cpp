@@ -6,26 +6,18 @@
 
 #include "app/input.h"
 #include "app/text.h"
-#include "lodestone/base/text.h"
+#include "lodestone/base/file.h"
 #include "lodestone/io/write.h"
 #include "lodestone/measure/heat.h"
 
 namespace lodestone::app {
-namespace {
-
-std::string extension_of(const std::string& path) {
-  return lower_case(std::filesystem::path(path).extension().string());
-}
-
-}  // namespace
 
 Result<void> check_heat_output(const std::string& output, const std::vector<std::string>& inputs) {
+  const Result<void> checked = check_output(output, {inputs.begin(), inputs.end()}, io::Compression::none);
   const std::string extension = extension_of(output);
-  if (extension != ".glb" && extension != ".gltf" && extension != ".ply") {
-    return fail(ErrorCode::bad_argument, "--heat writes numbers and colours a vertex, which this format does not keep",
-                output, "end its name in .glb, .gltf or .ply");
-  }
-  return check_output(output, {inputs.begin(), inputs.end()}, io::Compression::none);
+  if (!checked || extension == ".glb" || extension == ".gltf" || extension == ".ply") return checked;
+  return fail(ErrorCode::bad_argument, "--heat writes numbers and colours a vertex, which this format does not keep",
+              output, "end its name in .glb, .gltf or .ply");
 }
 
 Result<HeatReport> write_heat(const Model& a, const Model& b, const std::string& output, Console& console,
@@ -38,7 +30,7 @@ Result<HeatReport> write_heat(const Model& a, const Model& b, const std::string&
   if (!written) return fail(written.error());
   console.wrote(output);
   for (const std::string& warning : written->warnings) console.note(fmt::format("{}: {}", output, warning));
-  return HeatReport{output, heat->range, heat->largest, heat->triangles, drawn_triangles(heat->model)};
+  return HeatReport{output, heat->range, heat->largest, drawn_triangles(heat->model)};
 }
 
 }  // namespace lodestone::app

@@ -59,9 +59,8 @@ struct SimplifyReport {
 /// A surface coloured by its distance.
 struct HeatReport {
   std::string file;
-  double range = 0, largest = 0;  ///< distance of the last colour, and of the farthest vertex
-  std::uint64_t drawn = 0;        ///< triangles of A,
-  std::uint64_t triangles = 0;    ///< and of the file, where large ones are split
+  double range = 0, largest = 0;  ///< distance of the last colour, and of the farthest vertex, model units
+  std::uint64_t triangles = 0;    ///< of the file, where large ones of A are split
 };
 
 struct MeasureReport {

@@ -69,10 +69,6 @@ std::string cut_to_width(std::string_view text, std::size_t width) {
   return std::string(text.substr(0, end));
 }
 
-std::string short_number(double value) { return fmt::format("{:.4g}", value); }
-
-std::string percent(double share) { return fmt::format("{:.3g} %", share * 100); }
-
 std::string seconds_text(double seconds) { return fmt::format("{:.2f}", seconds); }
 
 std::string wrapped(std::string_view text, std::size_t width, std::size_t indent) {

@@ -19,10 +19,6 @@ std::size_t width_of(std::string_view text);
 /// The first `width` columns.
 std::string cut_to_width(std::string_view text, std::size_t width);
 
-/// Four significant digits: "0.001234", "12.35", "1.2e-07".
-std::string short_number(double value);
-/// A share as "12.5 %".
-std::string percent(double share);
 std::string seconds_text(double seconds);
 
 /// Breaks at spaces so that no line is wider than `width`; every line but the first begins with `indent` spaces.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "bench/register.h"
 #include "lodestone/base/parallel.h"
 #include "lodestone/io/image_decode.h"
 #include "lodestone/io/read.h"
@@ -40,13 +41,6 @@ void frame(benchmark::State& state, const render::Scene& scene, int threads) {
     benchmark::DoNotOptimize(render::rasterize(scene, camera, 1280, 720, 4, Task::root({}, threads)));
   }
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * scene.triangle_count()));
-}
-
-template <class Body>
-void add(const std::string& name, int threads, Body body) {
-  benchmark::RegisterBenchmark((name + "/threads:" + std::to_string(threads)).c_str(), body)
-      ->UseRealTime()
-      ->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <string>
 
+#include "bench/register.h"
 #include "lodestone/base/parallel.h"
 #include "lodestone/io/read.h"
 #include "lodestone/spatial/surface.h"
@@ -67,13 +68,6 @@ ScalarVolume<std::uint8_t> gyroid(std::uint32_t n) {
     }
   }
   return out;
-}
-
-template <class Body>
-void add(const std::string& name, int threads, Body body) {
-  benchmark::RegisterBenchmark((name + "/threads:" + std::to_string(threads)).c_str(), body)
-      ->UseRealTime()
-      ->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "lodestone/base/file.h"
+#include "lodestone/base/text.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -98,6 +99,8 @@ Result<void> InputFile::seek(std::uint64_t offset) {
   position_ = offset;
   return {};
 }
+
+std::string extension_of(const std::filesystem::path& path) { return lower_case(path.extension().string()); }
 
 Result<std::string> read_file(const std::filesystem::path& path) {
   Result<InputFile> file = InputFile::open(path);

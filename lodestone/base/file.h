@@ -40,6 +40,9 @@ class InputFile {
   std::uint64_t position_ = 0;
 };
 
+/// The ending of a name in lower case, with its dot: ".ply"; empty without one.
+std::string extension_of(const std::filesystem::path& path);
+
 /// The whole file. Errors: cannot_read.
 Result<std::string> read_file(const std::filesystem::path& path);
 

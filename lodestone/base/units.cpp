@@ -50,4 +50,8 @@ std::string human_bytes(std::uint64_t bytes) {
   return fmt::format("{:.{}f} {}", value, value < 9.95 ? 1 : 0, kNames[i]);
 }
 
+std::string short_number(double value) { return fmt::format("{:.4g}", value); }
+
+std::string percent(double share) { return fmt::format("{:.3g} %", share * 100); }
+
 }  // namespace lodestone

@@ -23,5 +23,9 @@ Result<Length> parse_length(std::string_view text);
 std::string with_separators(std::uint64_t value);
 /// "3.4 MB" (powers of 1000)
 std::string human_bytes(std::uint64_t bytes);
+/// Four significant digits: "0.001234", "12.35", "1.2e-07".
+std::string short_number(double value);
+/// A share as "12.5 %".
+std::string percent(double share);
 
 }  // namespace lodestone

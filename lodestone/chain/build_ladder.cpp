@@ -10,6 +10,7 @@
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 #include "lodestone/chain/collapse_plan_detail.h"
+#include "lodestone/chain/level_error_detail.h"
 
 namespace lodestone::chain {
 
@@ -103,13 +104,7 @@ Result<Cut> make_cut(const CollapsePlan& plan, std::size_t prefix, const Referen
   cut.level.model = std::move(*model);
   cut.level.method = "edge collapse";
   cut.level.seconds = cut.simplify_seconds + cut.measure_seconds;
-  LevelError& e = cut.level.error;
-  e.error = e.measured_error = d->trusted_max();
-  e.mean_error = d->mean;
-  e.rms_error = d->rms;
-  e.diagonal = d->diagonal;
-  e.kind = d->is_bounded ? ErrorKind::bounded : ErrorKind::measured;
-  e.samples = d->samples;
+  cut.level.error = detail::level_error(*d);
   return cut;
 }
 

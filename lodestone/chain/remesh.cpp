@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lodestone/base/stopwatch.h"
+#include "lodestone/chain/level_error_detail.h"
 #include "lodestone/spatial/bvh.h"
 #include "lodestone/voxel/isosurface.h"
 #include "lodestone/voxel/project.h"
@@ -19,7 +20,7 @@ Result<void> check(const RemeshOptions& options) {
     return fail(ErrorCode::bad_argument, std::move(what), {}, std::move(remedy));
   };
   if (options.resolutions.empty()) return bad("no resolution is asked for", "ask for 4 voxels or more");
-  if (options.ratio > 64) return bad("the ratio must be at most 64", {});
+  if (options.supersample > 64) return bad("more than 64 voxels in one are asked for", "use 1 to 64");
   for (std::size_t i = 0; i < options.resolutions.size(); ++i) {
     const std::uint32_t n = options.resolutions[i];
     if (n < 4 || n > 16'384) return bad(fmt::format("a resolution of {} can't be", n), "use 4 to 16,384");
@@ -29,7 +30,7 @@ Result<void> check(const RemeshOptions& options) {
   return {};
 }
 
-// Size of a level's grid inside the solid's: a whole number of its voxels each where the finest has `ratio`.
+// Size of a level's grid inside the solid's: a whole number of its voxels each where the finest has `supersample`.
 std::array<std::uint32_t, 3> level_size(const VoxelGrid& solid, std::uint32_t longest, std::uint32_t resolution) {
   std::array<std::uint32_t, 3> size{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -56,6 +57,7 @@ Result<Mesh> contour(const BitVolume& solid, std::uint32_t resolution, const spa
   if (!mesh) return fail(mesh.error());
   const Vec3d voxel = shares->grid.spacing;
   if (options.project) voxel::project(*mesh, source, std::max({voxel.x, voxel.y, voxel.z}), task);
+  if (task.cancelled()) return cancelled_error("remeshing");
   seconds.isosurface += watch.lap();
   return mesh;
 }
@@ -69,10 +71,10 @@ Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Ta
   const Result<FillChoice> choice = choose_fill(model, options.fill, task.part(0.1));
   if (!choice) return fail(choice.error());
   const std::uint32_t usual = choice->fill == voxel::FillRule::winding ? 2 : 4;
-  const std::uint32_t ratio = options.ratio > 0 ? options.ratio : usual;
+  const std::uint32_t supersample = options.supersample > 0 ? options.supersample : usual;
   SolidOptions solid_options;
-  solid_options.resolution = options.resolutions.front() * ratio;
-  solid_options.margin = solid_options.multiple = ratio;  // whole voxels of the finest level
+  solid_options.resolution = options.resolutions.front() * supersample;
+  solid_options.margin = solid_options.multiple = supersample;  // whole voxels of the finest level
   const Result<Solid> solid = solid_of(model, *choice, solid_options, task.part(0.3));
   if (!solid) return fail(solid.error());
   out.seconds.voxelize = solid->seconds.slicing + solid->seconds.filling;
@@ -81,9 +83,7 @@ Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Ta
   out.fill = *choice;
   out.warnings = solid->warnings;
 
-  const Result<spatial::Surface> surface = spatial::flatten(model, task.part(0.1));
-  if (!surface) return fail(surface.error());
-  const spatial::Bvh source(*surface, task);
+  const spatial::Bvh source(solid->surface, task);
   out.seconds.prepare = watch.total() - out.seconds.voxelize;
   std::optional<measure::Reference> reference;
   if (options.measure) {
@@ -106,12 +106,7 @@ Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Ta
       const Stopwatch measuring;
       const Result<measure::Distance> d = reference->distance_to(level.model, options.distance, part);
       if (!d) return fail(d.error());
-      level.error.error = level.error.measured_error = d->trusted_max();
-      level.error.mean_error = d->mean;
-      level.error.rms_error = d->rms;
-      level.error.diagonal = d->diagonal;
-      level.error.kind = d->is_bounded ? ErrorKind::bounded : ErrorKind::measured;
-      level.error.samples = d->samples;
+      level.error = detail::level_error(*d, out.levels.empty() ? 0 : out.levels.back().error.error);
       out.seconds.measure += measuring.total();
     }
     level.seconds = making.total();

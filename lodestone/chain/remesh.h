@@ -17,11 +17,11 @@
 namespace lodestone::chain {
 
 struct RemeshOptions {
-  /// Voxels along the longest side of each level, falling; 0 in front of none. The first is the finest.
+  /// Voxels along the longest side of each level, the margin of one at both ends counted; falling, the finest first.
   std::vector<std::uint32_t> resolutions{128};
   /// Voxels of the solid in one of the finest level, along each side (the paper's downsampling ratio; it finds 5 to 15
   /// best; after projection more than 4 buy little). 0: 4, or 2 where winding numbers fill, as they take their time.
-  std::uint32_t ratio = 0;
+  std::uint32_t supersample = 0;
   std::optional<voxel::FillRule> fill;  ///< without: by the input, see fill_for()
   bool project = true;                  ///< move vertices onto the source, at most a voxel of the level far
   bool measure = true;

@@ -4,7 +4,6 @@
 
 #include "lodestone/base/units.h"
 #include "lodestone/measure/shape.h"
-#include "lodestone/spatial/surface.h"
 
 namespace lodestone::chain {
 
@@ -43,7 +42,7 @@ Result<FillChoice> choose_fill(const Model& model, std::optional<voxel::FillRule
 }
 
 Result<Solid> solid_of(const Model& model, const FillChoice& choice, const SolidOptions& options, Task task) {
-  const Result<spatial::Surface> surface = spatial::flatten(model, task.part(0.3));
+  Result<spatial::Surface> surface = spatial::flatten(model, task.part(0.3));
   if (!surface) return fail(surface.error());
   Result<VoxelGrid> grid = voxel::grid_around(surface->bounds, options.resolution, options.margin);
   if (!grid) return fail(grid.error());
@@ -64,6 +63,7 @@ Result<Solid> solid_of(const Model& model, const FillChoice& choice, const Solid
                                        with_separators(made->leaking_columns), choice.reason));
   }
   out.volume = std::move(made->volume);
+  out.surface = std::move(*surface);
   out.seconds = made->seconds;
   return out;
 }

@@ -10,6 +10,7 @@
 #include "lodestone/base/task.h"
 #include "lodestone/core/model.h"
 #include "lodestone/core/topology.h"
+#include "lodestone/spatial/surface.h"
 #include "lodestone/voxel/voxelize.h"
 
 namespace lodestone::chain {
@@ -38,6 +39,7 @@ struct SolidOptions {
 
 struct Solid {
   BitVolume volume;
+  spatial::Surface surface;           ///< what it was made from, in world space
   std::vector<std::string> warnings;  ///< what had to be assumed
   voxel::VoxelizeSeconds seconds;     ///< of voxelizing alone, without flattening the scene
 };

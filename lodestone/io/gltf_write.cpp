@@ -13,7 +13,6 @@
 #include <span>
 
 #include "lodestone/base/file.h"
-#include "lodestone/base/text.h"
 #include "lodestone/base/units.h"
 #include "lodestone/io/draco_detail.h"
 #include "lodestone/io/gltf_document.h"
@@ -340,7 +339,7 @@ Result<WriteReport> write(const Model& original, std::span<const Level> levels, 
   const std::string bin = w.pack->finish();
   if (bin.empty()) w.json.erase("buffers");
   if (task.cancelled()) return cancelled_error("writing");
-  const bool text = lower_case(path.extension().string()) == ".gltf";
+  const bool text = extension_of(path) == ".gltf";
   const Result<void> ok = text ? write_gltf_and_bin(w, path, bin) : write_glb(w, path, bin);
   if (!ok) return fail(ok.error());
   report_levels(w, path);

@@ -30,7 +30,7 @@ bool is_picture_extension(std::string_view extension) {
 }
 
 Result<std::uint64_t> write_picture(const Pixels& pixels, const std::filesystem::path& path) {
-  const std::string extension = lower_case(path.extension().string());
+  const std::string extension = extension_of(path);
   if (!is_picture_extension(extension)) {
     return fail(ErrorCode::bad_argument, fmt::format("'{}' is no format of pictures that we write", extension),
                 path.string(), "end it in .png or .webp");

@@ -104,7 +104,7 @@ std::vector<std::string> readable_extensions() {
 }
 
 Result<Model> read_model(const std::filesystem::path& path, const ReadOptions& options, Task task) {
-  const std::string extension = lower_case(path.extension().string());
+  const std::string extension = extension_of(path);
   std::array<char, 8> head{};
   std::size_t head_size = 0;
   {

@@ -27,8 +27,6 @@ namespace {
 constexpr std::string_view kLevelMark = "{level}";
 constexpr std::array<std::string_view, 6> kExtensions{".glb", ".gltf", ".ply", ".obj", ".stl", ".off"};
 
-std::string extension_of(const fs::path& path) { return lower_case(path.extension().string()); }
-
 bool is_gltf(std::string_view extension) { return extension == ".glb" || extension == ".gltf"; }
 
 bool is_pattern(const fs::path& path) { return path.filename().string().find(kLevelMark) != std::string::npos; }

@@ -115,8 +115,8 @@ std::vector<Side> sides_to_split(const Field& field, const spatial::Bvh& to, con
 }
 
 // Splits until straight lines between the vertices tell the distance.
-void refine(Field& field, const spatial::Bvh& to, double diagonal, const HeatOptions& options, double& largest,
-            const Task& task) {
+void refine(Field& field, const spatial::Bvh& to, double diagonal, const HeatOptions& options, const Task& task) {
+  double largest = largest_of(field.distance);  // of vertices and of what was looked at between them
   const SplitRules rules{options.shortest_side * diagonal, options.longest_side * diagonal, options.tolerance,
                          kNothing * diagonal};
   for (int round = 0; round < kMostRounds && !task.cancelled(); ++round) {
@@ -207,8 +207,7 @@ Result<Heat> heat_map(const Model& a, const Model& b, const HeatOptions& options
   const Vec3d offset = from->bounds.center();
   Field field{std::move(from->positions), std::move(from->triangles), {}, 0};
   field.distance = distances(to, field.positions, task);
-  double largest = largest_of(field.distance);
-  refine(field, to, diagonal, options, largest, task);
+  refine(field, to, diagonal, options, task);
   if (task.cancelled()) return cancelled_error("heat map");
   heat.largest = largest_of(field.distance);
   heat.percentile_99 = area_percentile(field, 0.99, heat.largest, task);

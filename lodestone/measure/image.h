@@ -1,6 +1,7 @@
 // How different two models look: pictures of both from all around, compared.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -34,6 +35,10 @@ struct ImageDeviation {
   bool has_color = false;  ///< false: neither model has textures or vertex colours, and colour figures are empty
   int views = 0;
   std::uint32_t size_px = 0;
+
+  /// Of shading and colours the figure that is worse.
+  double worse_psnr() const { return std::min(shading_psnr, color_psnr); }
+  double worse_ssim() const { return std::min(shading_ssim, color_ssim); }
 };
 
 /// Pictures of an original, to compare many levels with. Textures must be decoded before (io::decode_base_colors()).

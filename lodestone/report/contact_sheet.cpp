@@ -36,17 +36,28 @@ std::uint32_t left_of(std::size_t column, const SheetOptions& options) {
   return kGap + static_cast<std::uint32_t>(column) * (options.picture.width + kGap);
 }
 
+}  // namespace
+
+SheetSize sheet_size(std::size_t levels, const SheetOptions& options) {
+  return {left_of(levels, options), lower_row(options).caption + 2 * kLine};
+}
+
+namespace {
+
 Result<void> check(const std::vector<SheetLevel>& levels, const SheetOptions& options) {
   if (levels.empty()) return fail(ErrorCode::bad_argument, "a sheet needs at least one level");
   if (options.picture.shading == render::Shading::heat) {
     return fail(ErrorCode::bad_argument, "a sheet shows no heat", {}, "choose another shading");
   }
-  const std::uint64_t width = std::uint64_t{levels.size()} * (std::uint64_t{options.picture.width} + kGap) + kGap;
-  const std::uint64_t height = 2 * std::uint64_t{options.picture.height} + 200;
-  if (width <= render::kMostSide && height <= render::kMostSide) return {};
+  const auto fits = [](std::uint64_t side) { return side <= render::kMostSide; };
+  const SheetSize size = sheet_size(levels.size(), options);
+  if (fits(options.picture.width) && fits(options.picture.height) && levels.size() <= render::kMostSide &&
+      fits(size.width) && fits(size.height)) {
+    return {};
+  }
   return fail(ErrorCode::bad_argument,
               fmt::format("{} levels of {} x {} pixels make a sheet of {} x {}, {} is the most", levels.size(),
-                          options.picture.width, options.picture.height, width, height, render::kMostSide),
+                          options.picture.width, options.picture.height, size.width, size.height, render::kMostSide),
               {}, "make the pictures smaller");
 }
 
@@ -82,10 +93,6 @@ void write_line(Pixels& sheet, std::string text, std::uint32_t left, std::uint32
 }
 
 }  // namespace
-
-SheetSize sheet_size(std::size_t levels, const SheetOptions& options) {
-  return {left_of(levels, options), lower_row(options).caption + 2 * kLine};
-}
 
 Result<Pixels> contact_sheet(const std::vector<SheetLevel>& levels, const SheetOptions& options, Task task) {
   if (const Result<void> ok = check(levels, options); !ok) return fail(ok.error());

@@ -16,16 +16,8 @@ namespace lodestone::report {
 
 namespace {
 
-std::string number(double value) { return fmt::format("{:.4g}", value); }
-std::string percent(double share) { return fmt::format("{:.3g} %", share * 100); }
-
 std::string length(const ReportData& data, double value) {
-  return number(value) + (data.unit.empty() ? "" : " " + escaped(data.unit));
-}
-
-// "error (mm)"
-std::string with_unit(const ReportData& data, const char* title) {
-  return data.unit.empty() ? title : fmt::format("{} ({})", title, escaped(data.unit));
+  return short_number(value) + (data.unit.empty() ? "" : " " + escaped(data.unit));
 }
 
 // A table in a box of its own that scrolls where it is too wide, also by keyboard.
@@ -48,6 +40,10 @@ class TableMaker {
   std::string html_;
 };
 
+bool has_image_figures(const ReportData& data) {
+  return std::any_of(data.levels.begin(), data.levels.end(), [](const ReportLevel& l) { return l.image.has_value(); });
+}
+
 std::string summary(const ReportData& data) {
   if (data.levels.size() < 2) {
     return fmt::format("No level could be made from its {} triangles.", with_separators(data.levels.front().triangles));
@@ -67,14 +63,13 @@ std::string level_table(const ReportData& data) {
   std::vector<std::string> titles{"level",
                                   "triangles",
                                   "share",
-                                  with_unit(data, "error"),
+                                  escaped(with_unit("error", data.unit)),
                                   "relative",
                                   "kind",
-                                  with_unit(data, "mean"),
-                                  with_unit(data, "rms"),
-                                  with_unit(data, "1 px from")};
-  const bool pictures =
-      std::any_of(data.levels.begin(), data.levels.end(), [](const auto& l) { return l.image.has_value(); });
+                                  escaped(with_unit("mean", data.unit)),
+                                  escaped(with_unit("rms", data.unit)),
+                                  escaped(with_unit("1 px from", data.unit))};
+  const bool pictures = has_image_figures(data);
   if (pictures) titles.insert(titles.end(), {"silhouette", "PSNR", "SSIM"});
   titles.push_back("bytes");
   const bool files = std::any_of(data.levels.begin(), data.levels.end(),
@@ -89,19 +84,19 @@ std::string level_table(const ReportData& data) {
     std::vector<std::string> row{std::to_string(i),
                                  with_separators(level.triangles),
                                  percent(share),
-                                 number(e.error),
+                                 short_number(e.error),
                                  percent(e.relative(e.error)),
                                  i == 0                         ? "original"
                                  : e.kind == ErrorKind::bounded ? "certified"
                                                                 : "found",
-                                 number(e.mean_error),
-                                 number(e.rms_error),
-                                 number(measure::switch_distance(e.error, 1, data.view))};
+                                 short_number(e.mean_error),
+                                 short_number(e.rms_error),
+                                 short_number(measure::switch_distance(e.error, 1, data.view))};
     if (pictures) {
       const measure::ImageDeviation image = level.image.value_or(measure::ImageDeviation{});
       row.push_back(percent(image.silhouette_mean));
-      row.push_back(fmt::format("{:.1f} dB", std::min(image.shading_psnr, image.color_psnr)));
-      row.push_back(fmt::format("{:.4f}", std::min(image.shading_ssim, image.color_ssim)));
+      row.push_back(fmt::format("{:.1f} dB", image.worse_psnr()));
+      row.push_back(fmt::format("{:.4f}", image.worse_ssim()));
     }
     row.push_back(human_bytes(level.bytes));
     if (files) row.push_back(escaped(level.file));
@@ -122,8 +117,8 @@ std::string shape_table(const ReportData& data) {
     const bool volumes = t.closed && first.topology.closed && first.volume != 0;
     table.add_row({std::to_string(i), with_separators(t.components), with_separators(t.boundary_edges),
                    t.closed ? "yes" : "no", t.manifold ? "yes" : "no", s.genus ? std::to_string(*s.genus) : "–",
-                   number(s.area), first.area > 0 ? fmt::format("{:.5g} %", s.area / first.area * 100) : "–",
-                   t.closed ? number(s.volume) : "–",
+                   short_number(s.area), first.area > 0 ? fmt::format("{:.5g} %", s.area / first.area * 100) : "–",
+                   t.closed ? short_number(s.volume) : "–",
                    volumes ? fmt::format("{:.5g} %", s.volume / first.volume * 100) : "–"});
   }
   return table.html();
@@ -198,10 +193,6 @@ std::string options_table(const std::vector<ReportOption>& options, bool given) 
       given ? "Options given" : "Defaults", rows);
 }
 
-bool has_image_figures(const ReportData& data) {
-  return std::any_of(data.levels.begin(), data.levels.end(), [](const ReportLevel& l) { return l.image.has_value(); });
-}
-
 // A direction; ladders take more where chance would make the mean.
 std::uint64_t least_samples(const ReportData& data) {
   std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
@@ -239,8 +230,8 @@ std::string meaning(const ReportData& data) {
       "fine as the picture. 99 % of the area is nearer than what yellow stands for, but where few places are far "
       "off.</dd>\n"
       "</dl>\n",
-      length(data, data.diagonal), with_separators(least_samples(data)), number(data.view.height_px),
-      number(data.view.fov_degrees), image);
+      length(data, data.diagonal), with_separators(least_samples(data)), short_number(data.view.height_px),
+      short_number(data.view.fov_degrees), image);
 }
 
 std::string section(const char* id, const char* title, const std::string& content) {

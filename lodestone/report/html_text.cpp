@@ -1,5 +1,7 @@
 #include "lodestone/report/html_text.h"
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -52,6 +54,10 @@ std::string escaped(std::string_view text) {
     text.remove_prefix(size == 0 ? 1 : size);
   }
   return out;
+}
+
+std::string with_unit(std::string_view title, std::string_view unit) {
+  return unit.empty() ? std::string(title) : fmt::format("{} ({})", title, unit);
 }
 
 }  // namespace lodestone::report

@@ -1,4 +1,4 @@
-// Text from outside, made safe for a page.
+// Text for a page: made safe, with units.
 #pragma once
 
 #include <string>
@@ -9,5 +9,8 @@ namespace lodestone::report {
 /// For between tags and for quoted attributes: & < > " ' become references, control characters spaces, and bytes that
 /// are not UTF-8 the replacement character.
 std::string escaped(std::string_view text);
+
+/// "error (mm)", or the title alone without a unit. Not escaped.
+std::string with_unit(std::string_view title, std::string_view unit);
 
 }  // namespace lodestone::report

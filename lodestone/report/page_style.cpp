@@ -8,7 +8,8 @@ const std::string_view kPageStyle = R"css(
 @media (prefers-color-scheme: dark) { :root { --paper: #14171b; --card: #1c2026; --ink: #e8eaed; --soft: #a3abb5; --line: #343a42;
   --accent: #7cc0f8; --c0: #7cc0f8; --c1: #fb923c; --c2: #6ee7a0; --c3: #d0a5fb; --c4: #e6c15a; --c5: #f58ac0; --warn: #33290f; } }
 * { box-sizing: border-box; }
-html { scroll-behavior: smooth; -webkit-text-size-adjust: 100%; }
+html { -webkit-text-size-adjust: 100%; }
+@media (prefers-reduced-motion: no-preference) { html { scroll-behavior: smooth; } }
 body { margin: 0; background: var(--paper); color: var(--ink);
   font: 16px/1.6 system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "DejaVu Sans", sans-serif; }
 .wide { max-width: 1200px; margin: 0 auto; padding: 0 20px; }

@@ -15,12 +15,12 @@ std::string figure(const Plot& plot, const std::string& caption) {
                      escaped(plot.title), caption);
 }
 
-std::string with_unit(const ReportData& data, const std::string& title) {
-  return data.unit.empty() ? title + " (model units)" : title + " (" + data.unit + ")";
-}
+// Axes always say in what they are.
+std::string axis_unit(const ReportData& data) { return data.unit.empty() ? "model units" : data.unit; }
 
 Plot error_plot(const ReportData& data) {
-  Plot plot{"Error over triangles", "triangles", with_unit(data, "distance to the original"), true, true, {}};
+  Plot plot{
+      "Error over triangles", "triangles", with_unit("distance to the original", axis_unit(data)), true, true, {}};
   PlotLine largest{"largest", {}, "", false}, mean{"mean", {}, "", true};
   for (const ReportLevel& level : data.levels) {
     const auto triangles = static_cast<double>(level.triangles);
@@ -43,7 +43,7 @@ Plot size_plot(const ReportData& data) {
 
 // A line a level: what its error covers from where; the marks in the middle are where that is one pixel.
 Plot pixel_plot(const ReportData& data) {
-  Plot plot{"Error on the screen over distance", with_unit(data, "distance"), "pixels", true, true, {}};
+  Plot plot{"Error on the screen over distance", with_unit("distance", axis_unit(data)), "pixels", true, true, {}};
   for (std::size_t i = 1; i < data.levels.size(); ++i) {
     const double error = data.levels[i].error.error;
     const double from = measure::switch_distance(error, 1, data.view);

@@ -120,29 +120,30 @@ std::string description(const Plot& plot) {
   return text;
 }
 
-}  // namespace
-
-std::vector<double> axis_ticks(double least, double largest, bool logarithmic) {
+// Powers of ten; twice and five times them, too, where there is room.
+std::vector<double> power_ticks(double least, double largest) {
   std::vector<double> ticks;
+  if (!(least > 0) || !std::isfinite(largest)) return ticks;
   const auto add = [&](double tick) {
-    if (tick >= least * (least > 0 ? 1 - 1e-9 : 1) && tick <= largest * (1 + 1e-9)) ticks.push_back(tick);
+    if (tick >= least * (1 - 1e-9) && tick <= largest * (1 + 1e-9)) ticks.push_back(tick);
   };
-  if (logarithmic) {
-    if (!(least > 0) || !std::isfinite(largest)) return ticks;
-    const int low = static_cast<int>(std::floor(std::log10(least))),
-              high = static_cast<int>(std::ceil(std::log10(largest)));
-    const int every = std::max(1, (high - low) / 6);
-    const bool wide = std::log10(largest / least) > 2;  // no room between the powers
-    for (int power = low; power <= high; ++power) {
-      if ((power - low) % every != 0) continue;
-      const double decade = std::pow(10.0, power);
-      add(decade);
-      if (wide) continue;
-      add(2 * decade);
-      add(5 * decade);
-    }
-    return ticks;
+  const int low = static_cast<int>(std::floor(std::log10(least))),
+            high = static_cast<int>(std::ceil(std::log10(largest)));
+  const int every = std::max(1, (high - low) / 6);
+  const bool wide = std::log10(largest / least) > 2;  // no room between the powers
+  for (int power = low; power <= high; power += every) {
+    const double decade = std::pow(10.0, power);
+    add(decade);
+    if (wide) continue;
+    add(2 * decade);
+    add(5 * decade);
   }
+  return ticks;
+}
+
+// Steps of 1, 2 or 5 times a power of ten.
+std::vector<double> even_ticks(double least, double largest) {
+  std::vector<double> ticks;
   const double raw = (largest - least) / 5;
   if (!(raw > 0) || !std::isfinite(raw)) return ticks;
   const double decade = std::pow(10.0, std::floor(std::log10(raw)));
@@ -152,6 +153,14 @@ std::vector<double> axis_ticks(double least, double largest, bool logarithmic) {
                                             : 10 * decade;
   for (double tick = std::ceil(least / step); tick * step <= largest; ++tick) ticks.push_back(tick * step);
   return ticks;
+}
+
+}  // namespace
+
+std::vector<double> axis_ticks(double least, double largest, bool logarithmic) {
+  if (!logarithmic) return even_ticks(least, largest);
+  std::vector<double> ticks = power_ticks(least, largest);
+  return ticks.size() < 2 && least > 0 ? even_ticks(least, largest) : ticks;
 }
 
 std::string svg_of(const Plot& plot) {

@@ -26,7 +26,8 @@ struct Plot {
 std::string svg_of(const Plot& plot);
 
 /// Places of marks on an axis from `least` to `largest`: steps of 1, 2 or 5 times a power of ten, or, logarithmic,
-/// powers of ten with 2 and 5 between them where there is room. At least two where the range allows.
+/// powers of ten with 2 and 5 between them where there is room, and even steps where fewer than two of them lie there.
+/// At least two where the range allows.
 std::vector<double> axis_ticks(double least, double largest, bool logarithmic);
 
 }  // namespace lodestone::report

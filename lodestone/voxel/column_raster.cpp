@@ -40,8 +40,8 @@ std::vector<Band> bands_of(std::span<const GridVertex> vertices, std::span<const
   parallel_for(triangles.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     for (std::size_t t = begin; t < end; ++t) {
       const GridVertex &a = vertices[triangles[t][0]], &b = vertices[triangles[t][1]], &c = vertices[triangles[t][2]];
-      const Centres x = centres_between(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}) + 1, grid.size[0]);
-      const Centres y = centres_between(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}) + 1, grid.size[1]);
+      const Centers x = centers_between(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}) + 1, grid.size[0]);
+      const Centers y = centers_between(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}) + 1, grid.size[1]);
       if (x.first > x.last || y.first > y.last) continue;
       const auto first = static_cast<std::uint32_t>(y.first) / height,
                  last = static_cast<std::uint32_t>(y.last) / height;
@@ -60,6 +60,23 @@ std::vector<Band> bands_of(std::span<const GridVertex> vertices, std::span<const
     }
   });
   return bands;
+}
+
+std::vector<Crossing> sorted_crossings(const spatial::Surface& surface, std::span<const GridVertex> vertices,
+                                       const Band& band, const VoxelGrid& grid) {
+  std::vector<Crossing> crossings;
+  for (const std::uint32_t t : band.triangles) {
+    const Triangle& c = surface.triangles[t];
+    cross_columns(vertices[c[0]], vertices[c[1]], vertices[c[2]], grid, band.first, band.end,
+                  [&](std::uint32_t x, std::uint32_t y, std::uint32_t slice, int sign) {
+                    crossings.push_back({(y - band.first) * grid.size[0] + x, static_cast<std::uint16_t>(slice),
+                                         static_cast<std::int16_t>(sign)});
+                  });
+  }
+  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+    return a.column != b.column ? a.column < b.column : a.slice < b.slice;
+  });
+  return crossings;
 }
 
 }  // namespace lodestone::voxel::detail

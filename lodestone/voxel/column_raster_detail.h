@@ -1,10 +1,11 @@
 // Where lines along z through the centres of voxels cross triangles.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lodestone/base/task.h"
@@ -19,7 +20,8 @@ struct GridVertex {
   float z = 0;
 };
 
-inline constexpr std::int32_t kSubvoxel = 256;
+inline constexpr int kSubvoxelBits = 8;
+inline constexpr std::int32_t kSubvoxel = 1 << kSubvoxelBits;
 
 /// Far outside is brought to where no voxel is: crossings there count, which side they are on stays.
 std::vector<GridVertex> grid_vertices(const spatial::Surface& surface, const VoxelGrid& grid, const Task& task);
@@ -35,12 +37,13 @@ std::vector<Band> bands_of(std::span<const GridVertex> vertices, std::span<const
                            const VoxelGrid& grid, const Task& task);
 
 /// First and last voxel whose centre lies in [least, largest), 1/256 voxels; nothing when first > last.
-struct Centres {
+struct Centers {
   std::int32_t first, last;
 };
-inline Centres centres_between(std::int32_t least, std::int32_t largest, std::uint32_t size) {
+inline Centers centers_between(std::int32_t least, std::int32_t largest, std::uint32_t size) {
   // The centre of voxel i is at 256 i + 128.
-  const std::int32_t first = (least + kSubvoxel / 2 - 1) >> 8, last = (largest - kSubvoxel / 2 - 1) >> 8;
+  const std::int32_t first = (least + kSubvoxel / 2 - 1) >> kSubvoxelBits,
+                     last = (largest - kSubvoxel / 2 - 1) >> kSubvoxelBits;
   return {first > 0 ? first : 0,
           last < static_cast<std::int32_t>(size) - 1 ? last : static_cast<std::int32_t>(size) - 1};
 }
@@ -59,8 +62,8 @@ void cross_columns(const GridVertex& a, const GridVertex& b, const GridVertex& c
   if (twice_area == 0) return;  // seen from its side: no line crosses it
   const int sign = twice_area > 0 ? 1 : -1;
   if (sign < 0) std::swap(v[1], v[2]);
-  const Centres columns = centres_between(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}) + 1, grid.size[0]);
-  Centres rows = centres_between(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}) + 1, grid.size[1]);
+  const Centers columns = centers_between(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}) + 1, grid.size[0]);
+  Centers rows = centers_between(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}) + 1, grid.size[1]);
   rows.first = std::max(rows.first, static_cast<std::int32_t>(first_row));
   rows.last = std::min(rows.last, static_cast<std::int32_t>(end_row) - 1);
   // Edge k lies opposite to corner k. What lies on it is inside for edges that go down, or left along a row: of two
@@ -96,5 +99,15 @@ void cross_columns(const GridVertex& a, const GridVertex& b, const GridVertex& c
     for (std::size_t k = 0; k < 3; ++k) at_row[k] += step_y[k];
   }
 }
+
+struct Crossing {
+  std::uint32_t column = 0;  ///< of the band: (row - first row) * width + x
+  std::uint16_t slice = 0;   ///< as cross_columns() tells it
+  std::int16_t sign = 0;
+};
+
+/// All crossings of a band's lines, column by column, each from its first slice on.
+std::vector<Crossing> sorted_crossings(const spatial::Surface& surface, std::span<const GridVertex> vertices,
+                                       const Band& band, const VoxelGrid& grid);
 
 }  // namespace lodestone::voxel::detail

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -13,11 +12,6 @@ namespace {
 
 // A winding number this far from a half is no matter of doubt.
 constexpr double kMargin = 0.2;
-
-struct Crossing {
-  std::uint32_t column = 0;  // of the band
-  std::uint32_t slice = 0;
-};
 
 // One column of voxels, cut where the surface crosses it. Between two cuts the winding number changes smoothly.
 class Column {
@@ -34,24 +28,22 @@ class Column {
  private:
   double at(std::uint32_t z) const { return std::abs(winding_.at(volume_.grid.point({x_ + 0.5, y_ + 0.5, z + 0.5}))); }
 
-  // Ends that agree beyond doubt, and, at first, a middle that does too, stand for all; else each half is looked at.
+  // Ends that agree beyond doubt stand for all between them, once a middle has been looked at; else each half is.
   void fill_between(std::uint32_t first, double at_first, std::uint32_t last, double at_last, bool look) {
     const bool inside = at_first > 0.5;
     const bool agree =
         inside == (at_last > 0.5) && std::abs(at_first - 0.5) > kMargin && std::abs(at_last - 0.5) > kMargin;
-    if ((agree && !look) || last - first < 2) {
-      if (agree || last - first < 1) {
-        if (inside) set(first, last);
-        return;
-      }
+    if (agree && !look) {
+      if (inside) set(first, last);
+    } else if (last - first < 2) {
       if (inside) set(first, first);
       if (at_last > 0.5) set(last, last);
-      return;
+    } else {
+      const std::uint32_t middle = first + (last - first) / 2;
+      const double at_middle = at(middle);
+      fill_between(first, at_first, middle, at_middle, look && !agree);
+      fill_between(middle, at_middle, last, at_last, look && !agree);
     }
-    const std::uint32_t middle = first + (last - first) / 2;
-    const double at_middle = at(middle);
-    fill_between(first, at_first, middle, at_middle, !agree && look);
-    fill_between(middle, at_middle, last, at_last, !agree && look);
   }
 
   void set(std::uint32_t first, std::uint32_t last) {
@@ -63,22 +55,6 @@ class Column {
   std::uint32_t x_, y_;
 };
 
-std::vector<Crossing> crossings_of(const spatial::Surface& surface, const std::vector<GridVertex>& vertices,
-                                   const Band& band, const VoxelGrid& grid) {
-  std::vector<Crossing> crossings;
-  for (const std::uint32_t t : band.triangles) {
-    const Triangle& c = surface.triangles[t];
-    cross_columns(vertices[c[0]], vertices[c[1]], vertices[c[2]], grid, band.first, band.end,
-                  [&](std::uint32_t x, std::uint32_t y, std::uint32_t slice, int) {
-                    crossings.push_back({(y - band.first) * grid.size[0] + x, slice});
-                  });
-  }
-  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
-    return a.column != b.column ? a.column < b.column : a.slice < b.slice;
-  });
-  return crossings;
-}
-
 }  // namespace
 
 void fill_winding(const spatial::Surface& surface, BitVolume& volume, const Task& task) {
@@ -88,7 +64,7 @@ void fill_winding(const spatial::Surface& surface, BitVolume& volume, const Task
   const std::vector<Band> bands = bands_of(vertices, surface.triangles, grid, task);
   parallel_for(bands.size(), 1, task, [&](std::size_t i, std::size_t, std::size_t) {
     const Band& band = bands[i];
-    const std::vector<Crossing> crossings = crossings_of(surface, vertices, band, grid);
+    const std::vector<Crossing> crossings = sorted_crossings(surface, vertices, band, grid);
     std::size_t next = 0;
     for (std::uint32_t y = band.first; y < band.end && !task.cancelled(); ++y) {
       for (std::uint32_t x = 0; x < grid.size[0]; ++x) {

@@ -16,12 +16,11 @@ Vec3f normal_of(const std::vector<Vec3f>& positions, const Triangle& t) {
   return cross(positions[t[1]] - positions[t[0]], positions[t[2]] - positions[t[0]]);
 }
 
-// Takes back moves that turn triangles over, until none does. Each round only takes back, so it ends; later ones have
-// little to do.
+// Takes back moves that turn triangles over, until none does. Each round takes some back for good, so it ends.
 std::size_t take_back_turned(const Mesh& mesh, const std::vector<Vec3f>& before, std::vector<Vec3f>& moved,
                              const Task& task) {
   std::size_t kept = 0;
-  for (int round = 0; round < 8; ++round) {
+  while (!task.cancelled()) {
     std::vector<std::uint8_t> turned(mesh.triangles.size(), 0);
     parallel_for(mesh.triangles.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t t = begin; t < end; ++t) {

@@ -18,6 +18,7 @@
 namespace lodestone::voxel {
 
 using detail::Band;
+using detail::Crossing;
 using detail::GridVertex;
 
 namespace {
@@ -72,31 +73,14 @@ void fill_parity(BitVolume& volume, const Task& task) {
   });
 }
 
-struct Crossing {
-  std::uint32_t column = 0;
-  std::uint16_t slice = 0;
-  std::int16_t sign = 0;
-};
-
-// Crossings of a band's lines, sorted along each, and the voxels between them. Returns the lines that end inside.
+// The voxels between crossings. Returns the lines that end inside.
 std::uint64_t fill_nonzero(const spatial::Surface& surface, const std::vector<GridVertex>& vertices,
                            const std::vector<Band>& bands, BitVolume& volume, const Task& task) {
   const std::uint32_t width = volume.grid.size[0];
   std::vector<std::uint64_t> leaking(bands.size(), 0);
   parallel_for(bands.size(), 1, task, [&](std::size_t i, std::size_t, std::size_t) {
     const Band& band = bands[i];
-    std::vector<Crossing> crossings;
-    for (const std::uint32_t t : band.triangles) {
-      const Triangle& c = surface.triangles[t];
-      detail::cross_columns(vertices[c[0]], vertices[c[1]], vertices[c[2]], volume.grid, band.first, band.end,
-                            [&](std::uint32_t x, std::uint32_t y, std::uint32_t slice, int sign) {
-                              crossings.push_back({(y - band.first) * width + x, static_cast<std::uint16_t>(slice),
-                                                   static_cast<std::int16_t>(sign)});
-                            });
-    }
-    std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
-      return a.column != b.column ? a.column < b.column : a.slice < b.slice;
-    });
+    const std::vector<Crossing> crossings = detail::sorted_crossings(surface, vertices, band, volume.grid);
     int winding = 0;
     for (std::size_t k = 0; k < crossings.size(); ++k) {
       const Crossing& here = crossings[k];

@@ -14,7 +14,7 @@ namespace lodestone::voxel {
 /// Inside-Outside Segmentation using Generalized Winding Numbers, SIGGRAPH 2013). Groups of triangles that are farther
 /// away than twice their radius count as one (G. Barill, N. Dickson, R. Schmidt, D. Levin and A. Jacobson, Fast Winding
 /// Numbers for Soups and Clouds, SIGGRAPH 2018, first order), which is off by some hundredths. Build O(n), a query
-/// O(log n), memory 11 bytes a triangle. The surface must outlive it. No libm: the same bits on every machine.
+/// O(log n), memory 9 bytes a triangle. The surface must outlive it. No libm: the same bits on every machine.
 class WindingNumber {
  public:
   explicit WindingNumber(const spatial::Surface& surface, const Task& task = {});

@@ -42,6 +42,19 @@ class Report(Scratch):
         self.assertEqual([run["report"] for run in runs], ["out/a.html", "out/b.html"])
         self.assertTrue((self.folder / "out" / "b.html").is_file())
 
+    def test_a_missing_page_folder_is_told_before_the_work(self):
+        (self.folder / "models").mkdir()
+        (self.folder / "models" / "a.ply").write_bytes((self.folder / "statue.ply").read_bytes())
+        done = self.lod("build", "models/", "-o", "out/", "--report", "nowhere/{name}.html", code=1)
+        self.assert_error(done, "nowhere/a.html", "folder")
+        self.assertEqual(self.files(), ["models", "statue.ply"])
+
+    def test_only_defaults_that_applied_are_listed(self):
+        self.lod("build", "statue.ply", "-o", "s.glb", "--triangles", "3000,2000", "--report", "s.html")
+        page = (self.folder / "s.html").read_text()
+        for name, there in (("--triangles", True), ("--samples", True), ("--levels", False), ("--pixels", False)):
+            self.assertEqual(f">{name}<" in page, there, name)
+
     def test_places_that_can_not_be(self):
         for words, code, part in ((("--report", "page.txt"), 2, ".html"), (("--report", "none/page.html"), 1, "folder"),
                                   (("--report", "statue.ply"), 2, ".html")):

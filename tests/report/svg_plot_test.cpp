@@ -19,6 +19,7 @@ TEST(AxisTicks, round_steps) {
   EXPECT_EQ(axis_ticks(1, 1000, true), (std::vector<double>{1, 10, 100, 1000}));
   const std::vector<double> near = axis_ticks(9000, 260'000, true);
   EXPECT_EQ(near, (std::vector<double>{10'000, 20'000, 50'000, 100'000, 200'000}));
+  EXPECT_GE(axis_ticks(138'000, 247'000, true).size(), 2U);  // no power, half or fifth of one but 200,000
   EXPECT_LE(axis_ticks(1e-30, 1e30, true).size(), 8U);
 }
 

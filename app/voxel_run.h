@@ -1,0 +1,40 @@
+// What remesh and voxelize share: the request, reading, writing, the table.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/command_line.h"
+#include "app/console.h"
+#include "app/reports.h"
+#include "lodestone/base/result.h"
+#include "lodestone/core/model.h"
+#include "lodestone/io/write.h"
+#include "lodestone/voxel/voxelize.h"
+
+namespace lodestone::app {
+
+struct VoxelRequest {
+  std::string input, output;
+  std::uint32_t resolution = 0;
+  std::optional<voxel::FillRule> fill;
+  io::Compression compression = io::Compression::none;
+};
+
+/// Checked before anything is read. Errors: bad_argument, cannot_write.
+Result<VoxelRequest> voxel_request(const Arguments& arguments, const char* verb);
+
+/// Reads the input and begins the report. Errors: those of reading; cannot_write (an output that is part of the input).
+Result<Model> read_solid(const VoxelRequest& request, VoxelReport& report, const Console& console);
+
+/// Writes the result and ends the report but for its times. Errors: those of writing.
+Result<void> write_surface(const Model& model, const VoxelRequest& request, VoxelReport& report, Console& console);
+
+/// Tells warnings and keeps them.
+void tell(VoxelReport& report, const std::vector<std::string>& warnings, const Console& console);
+
+std::string table_of(const VoxelReport& report);
+
+}  // namespace lodestone::app
