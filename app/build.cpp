@@ -46,7 +46,7 @@ void add_levels(BuildReport& report, const chain::LadderResult& result, const io
 Result<Model> read_job(const BuildJob& job, const BuildPlan& plan, BuildReport& report, const Console& console,
                        const Task& task) {
   report.input = job.input.string();
-  Result<Model> model = read_input(job.input, console, task, {.levels = false});
+  Result<Model> model = read_input(job.input, console, task, {.levels = false}, plan.volume);
   if (!model) return model;
   Result<void> kept = io::check_replaced(*model, job.output, planned_levels(plan));
   if (kept && !job.report.empty()) kept = io::check_replaced(*model, job.report);
@@ -277,7 +277,7 @@ Result<ExitCode> run_batch(const std::vector<BuildJob>& jobs, const BuildPlan& p
 Result<ExitCode> run_build(const Arguments& arguments, Console& console) {
   const Result<BuildPlan> plan = build_plan(arguments);
   if (!plan) return fail(plan.error());
-  const Result<BuildJobs> all = build_jobs(arguments);
+  const Result<BuildJobs> all = build_jobs(arguments, plan->volume);
   if (!all) return fail(all.error());
   ResultFolder folder;
   if (const Result<void> made = folder.make(all->folder); !made) return fail(made.error());

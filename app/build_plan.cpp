@@ -58,6 +58,9 @@ Result<BuildPlan> build_plan(const Arguments& arguments) {
   Result<InfluencePlan> influence = influence_of(arguments, plan.lengths);
   if (!influence) return fail(influence.error());
   plan.influence = std::move(*influence);
+  Result<VolumeRequest> volume = volume_request(arguments);
+  if (!volume) return fail(volume.error());
+  plan.volume = std::move(*volume);
   plan.compression = compression_of(arguments);
   plan.image_error = arguments.has("--image-error");
   plan.report = arguments.has("--report");
@@ -116,11 +119,14 @@ std::string replaced(std::string text, std::string_view mark, const std::string&
   return text;
 }
 
+// A folder that is a batch of models, not one volume.
+bool is_batch(const fs::path& path, const VolumeRequest& volume) { return is_folder(path) && !is_volume(path, volume); }
+
 // Inputs with directories replaced by their files.
-Result<std::vector<fs::path>> list_inputs(const Arguments& arguments) {
+Result<std::vector<fs::path>> list_inputs(const Arguments& arguments, const VolumeRequest& volume) {
   std::vector<fs::path> inputs;
   for (const std::string& word : arguments.inputs) {
-    if (!is_folder(word)) {
+    if (!is_batch(word, volume)) {
       inputs.emplace_back(word);
       continue;
     }
@@ -131,13 +137,20 @@ Result<std::vector<fs::path>> list_inputs(const Arguments& arguments) {
   return inputs;
 }
 
+// "scan" for scan.ply, scan.nii.gz and the folder scan/.
+std::string stem_of(const fs::path& input) {
+  const fs::path named = input.has_filename() ? input : input.parent_path();
+  const std::string stem = named.stem().string();
+  return extension_of(named) == ".gz" ? fs::path(stem).stem().string() : stem;
+}
+
 // Two inputs a.ply and a.obj would both become a.glb: those keep their endings.
 std::vector<std::string> output_names(const std::vector<fs::path>& inputs) {
   std::map<std::string, int> uses;
-  for (const fs::path& input : inputs) ++uses[input.stem().string()];
+  for (const fs::path& input : inputs) ++uses[stem_of(input)];
   std::vector<std::string> names;
   for (const fs::path& input : inputs) {
-    const std::string stem = input.stem().string();
+    const std::string stem = stem_of(input);
     names.push_back(uses[stem] > 1 ? input.filename().string() : stem);
   }
   return names;
@@ -192,17 +205,17 @@ Result<std::string> report_pattern(const Arguments& arguments, bool batch) {
 
 }  // namespace
 
-Result<BuildJobs> build_jobs(const Arguments& arguments) {
+Result<BuildJobs> build_jobs(const Arguments& arguments, const VolumeRequest& volume) {
   if (!arguments.has("--output")) return missing_output("build", arguments.inputs.front());
   const std::string output = arguments.text("--output");
   const bool into_folder = output.ends_with('/') || is_folder(output);
   BuildJobs all;
-  all.batch = arguments.inputs.size() > 1 || is_folder(arguments.inputs.front());
+  all.batch = arguments.inputs.size() > 1 || is_batch(arguments.inputs.front(), volume);
   if (all.batch && !into_folder && output.find("{name}") == std::string::npos) {
     return fail(ErrorCode::bad_argument, fmt::format("-o {} is one file, but there are several inputs", output), {},
                 "name a folder with a slash at its end, such as -o lods/");
   }
-  Result<std::vector<fs::path>> inputs = list_inputs(arguments);
+  Result<std::vector<fs::path>> inputs = list_inputs(arguments, volume);
   if (!inputs) return fail(inputs.error());
   if (into_folder) all.folder = output;
   for (const std::string& word : arguments.inputs) {

@@ -7,6 +7,7 @@
 
 #include "app/influence.h"
 #include "app/shared_options.h"
+#include "app/volume_input.h"
 #include "lodestone/chain/build_ladder.h"
 #include "lodestone/report/html_report.h"
 
@@ -23,6 +24,7 @@ struct BuildPlan {
   LengthRules lengths;
   InfluencePlan influence;
   measure::DistanceOptions distance;
+  VolumeRequest volume;
   bool image_error = false;                   ///< --image-error
   bool report = false;                        ///< --report
   std::vector<report::ReportOption> options;  ///< all that was asked, for the report
@@ -53,6 +55,6 @@ struct BuildJobs {
 
 /// Lists directories and names the outputs. Errors: bad_argument (no output, an output that is an input, two inputs for
 /// one output), cannot_read, cannot_write, empty.
-Result<BuildJobs> build_jobs(const Arguments& arguments);
+Result<BuildJobs> build_jobs(const Arguments& arguments, const VolumeRequest& volume);
 
 }  // namespace lodestone::app

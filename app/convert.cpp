@@ -33,8 +33,10 @@ Result<ExitCode> run_convert(const Arguments& arguments, Console& console) {
     return fail(checked.error());
   }
 
+  const Result<VolumeRequest> volume = volume_request(arguments);
+  if (!volume) return fail(volume.error());
   Stopwatch watch;
-  const Result<Model> model = read_input(report.input, console, console.task().part(0.5, "reading"));
+  const Result<Model> model = read_input(report.input, console, console.task().part(0.5, "reading"), {}, *volume);
   if (!model) return fail(model.error());
   report.read_seconds = watch.lap();
   report.triangles = drawn_triangles(*model);

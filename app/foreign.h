@@ -16,9 +16,6 @@ namespace lodestone::app {
 /// Errors: those of io::read_model; bad_format when the reader crashed or ran into a limit; cancelled.
 Result<Model> read_foreign(const std::filesystem::path& path, Task task);
 
-/// How the names of the temporary folders begin that read_foreign() makes: "/tmp/lod-<process id>-".
-std::string temporary_folder_pattern();
-
 /// The hidden verb that the child runs.
 inline constexpr const char* kForeignVerb = "__read-foreign";
 /// Its main: `words` are the input and the GLB to write; what it has to say goes to file descriptor 3.

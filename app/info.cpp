@@ -152,7 +152,9 @@ Result<ExitCode> run_info(const Arguments& arguments, Console& console) {
   if (!lengths) return fail(lengths.error());
   InfoReport report;
   report.path = arguments.inputs.front();
-  Result<Model> model = read_input(report.path, console, console.task().part(0.5, "reading"));
+  const Result<VolumeRequest> volume = volume_request(arguments);
+  if (!volume) return fail(volume.error());
+  Result<Model> model = read_input(report.path, console, console.task().part(0.5, "reading"), {}, *volume);
   if (!model) return fail(model.error());
   apply_unit(*model, *lengths);
   report.unit = unit_name(model->meters_per_unit);

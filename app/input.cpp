@@ -16,14 +16,20 @@
 namespace lodestone::app {
 namespace fs = std::filesystem;
 
-Result<Model> read_input(const fs::path& path, const Console& console, Task task, const io::ReadOptions& options) {
+Result<Model> read_input(const fs::path& path, const Console& console, Task task, const io::ReadOptions& options,
+                         const VolumeRequest& volume) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
+  const bool slices = is_volume(path, volume);
+  if (fs::is_directory(path, ignored) && !slices) {
     return fail(ErrorCode::bad_argument, "is a directory, but one file is wanted here", path.string(),
                 "name a file in it");
   }
-  Result<Model> model = io::is_foreign_extension(path.extension().string()) ? read_foreign(path, task)
-                                                                            : io::read_model(path, options, task);
+  const auto read = [&]() -> Result<Model> {
+    if (slices) return read_volume_model(path, volume, task);
+    return io::is_foreign_extension(path.extension().string()) ? read_foreign(path, task)
+                                                               : io::read_model(path, options, task);
+  };
+  Result<Model> model = read();
   if (!model) return model;
   for (const std::string& warning : model->warnings) console.note(fmt::format("{}: {}", path.string(), warning));
   return model;

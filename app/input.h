@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/console.h"
+#include "app/volume_input.h"
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
 #include "lodestone/core/model.h"
@@ -14,10 +15,11 @@
 
 namespace lodestone::app {
 
-/// Reads a model and tells its warnings. Formats read by other people's libraries are read in a child process.
-/// Errors: those of io::read_model; bad_argument for a directory, as the verb takes a single file.
+/// Reads a model, or the surface of a volume, and tells its warnings. Formats read by other people's libraries are read
+/// in a child process. Errors: those of io::read_model and io::read_volume; bad_argument for a directory without
+/// slices, as the verb takes a single file.
 Result<Model> read_input(const std::filesystem::path& path, const Console& console, Task task,
-                         const io::ReadOptions& options = {});
+                         const io::ReadOptions& options = {}, const VolumeRequest& volume = {});
 
 /// Checks before the work begins that `output` can be written: a format we write, one that holds the compression, an
 /// existing folder with permission, not a directory, and none of `inputs`. "{level}" in the name stands for any number.

@@ -8,7 +8,7 @@
 #include <csignal>
 #include <string>
 
-#include "app/foreign.h"
+#include "app/child_process.h"
 #include "app/text.h"
 #include "lodestone/base/check.h"
 

@@ -35,7 +35,7 @@ Result<std::string> picture_output(const Arguments& arguments) {
 }
 
 Result<Model> read_drawn_level(const std::string& input, std::size_t level, std::vector<std::string>& warnings,
-                               const Console& console, const Task& task) {
+                               const Console& console, const Task& task, const VolumeRequest& volume) {
   if (level > 0) {
     const std::uint64_t levels = levels_in_file(input);
     if (levels == 1) {
@@ -49,8 +49,10 @@ Result<Model> read_drawn_level(const std::string& input, std::size_t level, std:
   }
   io::ReadOptions options;
   options.draw_level = level;
-  Result<Model> model = read_input(input, console, task, options);
+  Result<Model> model = read_input(input, console, task, options, volume);
   if (!model) return model;
+  for (Instance& instance : model->instances) instance.transform = model->gltf_axes * instance.transform;  // Y up
+  model->gltf_axes = {};
   warnings.insert(warnings.end(), model->warnings.begin(), model->warnings.end());
   std::vector<std::string> undecoded;
   if (const auto done = io::decode_base_colors(*model, undecoded, task); !done) return fail(done.error());

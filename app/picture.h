@@ -6,6 +6,7 @@
 
 #include "app/command_line.h"
 #include "app/console.h"
+#include "app/volume_input.h"
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
 #include "lodestone/core/model.h"
@@ -22,6 +23,6 @@ Result<void> check_picture_kept(const Model& model, const std::string& output);
 /// Reads a level of a model (0: the model itself), with its textures. What is amiss is told and added to `warnings`.
 /// Errors: bad_argument (no such level), those of reading.
 Result<Model> read_drawn_level(const std::string& input, std::size_t level, std::vector<std::string>& warnings,
-                               const Console& console, const Task& task);
+                               const Console& console, const Task& task, const VolumeRequest& volume = {});
 
 }  // namespace lodestone::app

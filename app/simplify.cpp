@@ -127,8 +127,10 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
     return fail(checked.error());
   }
 
+  const Result<VolumeRequest> volume = volume_request(arguments);
+  if (!volume) return fail(volume.error());
   Stopwatch watch;
-  Result<Model> model = read_input(input, console, console.task().part(0.15, "reading"), {.levels = false});
+  Result<Model> model = read_input(input, console, console.task().part(0.15, "reading"), {.levels = false}, *volume);
   if (!model) return fail(model.error());
   if (const Result<void> kept = io::check_replaced(*model, report.output); !kept) return fail(kept.error());
   apply_unit(*model, plan->lengths);

@@ -8,6 +8,7 @@
 #include "app/render_sheet.h"
 #include "app/shared_options.h"
 #include "app/verbs.h"
+#include "app/volume_input.h"
 #include "app/voxel_options.h"
 
 namespace lodestone::app {
@@ -23,7 +24,7 @@ VerbSpec build_spec() {
       "build",
       "Makes a ladder of levels from a model and measures each level's error against the original.",
       {"INPUT...", 1, kAnyNumber, {}, Completion::file},
-      {ladder_target_group(), view_group(), length_group(), method_group(), level_attributes_group(),
+      {ladder_target_group(), view_group(), length_group(), method_group(), level_attributes_group(), volume_group(),
        with_image_error(measuring_group(kBuildSamples)), with_report(output_group(true)), general_group()},
       {{"lod build statue.ply -o statue.glb", "five levels in one GLB (MSFT_lod), each with half the triangles"},
        {"lod build statue.ply -o statue_LOD{level}.obj --error 0.05%,0.2%,1%",
@@ -40,7 +41,7 @@ VerbSpec simplify_spec() {
   return {"simplify",
           "Makes one coarser mesh, down to a count, a share or a measured error.",
           one_model(),
-          {single_target_group(), length_group(), method_group(), level_attributes_group(),
+          {single_target_group(), length_group(), method_group(), level_attributes_group(), volume_group(),
            measuring_group(kBuildSamples), output_group(true), general_group()},
           {{"lod simplify statue.ply -o small.ply --triangles 5000", "at most 5,000 triangles"},
            {"lod simplify statue.ply -o small.glb --error 0.1%", "as coarse as 0.1 % of the diagonal allows"},
@@ -74,7 +75,7 @@ VerbSpec render_spec() {
   return {"render",
           "Draws a picture of a model without a display: shaded, textured, as wires, numbers as colours.",
           {"INPUT...", 1, kAnyNumber, {}, Completion::file},
-          {camera_group(), look_group(), sheet_group(), picture_group(), general_group()},
+          {camera_group(), look_group(), sheet_group(), volume_group(), picture_group(), general_group()},
           {{"lod render statue.ply -o statue.png", "from the front and a little above, in grey"},
            {"lod render statue.glb --level 1 --wireframe --view iso -o level1.png", "a ladder's level with its edges"},
            {"lod render statue.glb --sheet -o sheet.webp", "all levels of a ladder in one picture, with their errors"}},
@@ -89,7 +90,7 @@ VerbSpec remesh_spec() {
       "remesh",
       "Makes a new closed surface of even triangles from a model, by way of voxels.",
       one_model(),
-      {remesh_group(), measuring_group(kBuildSamples), output_group(true), general_group()},
+      {remesh_group(), volume_group(), measuring_group(kBuildSamples), output_group(true), general_group()},
       {{"lod remesh statue.ply -o even.ply", "128 voxels along the longest side"},
        {"lod remesh statue.glb -o fine.glb --resolution 200", "a finer one"},
        {"lod remesh statue.ply -o blocks.ply --resolution 40 --no-project", "as the voxels have it"}},
@@ -102,7 +103,7 @@ VerbSpec voxelize_spec() {
   return {"voxelize",
           "Fills a model with voxels and writes them as cubes.",
           one_model(),
-          {voxel_group(), output_group(true), general_group()},
+          {voxel_group(), volume_group(), output_group(true), general_group()},
           {{"lod voxelize statue.ply -o cubes.ply --resolution 32", "32 voxels along the longest side"},
            {"lod voxelize statue.glb -o cubes.glb --resolution 64 --fill nonzero", "overlapping parts are one solid"},
            {"lod voxelize statue.ply -o cubes.obj --resolution 16 --json", "figures as JSON"}},
@@ -114,7 +115,7 @@ VerbSpec info_spec() {
   return {"info",
           "Counts what a model has: triangles, pieces, borders, defects, attributes, materials, levels.",
           one_model(),
-          {unit_group(), result_group(), general_group()},
+          {unit_group(), volume_group(), result_group(), general_group()},
           {{"lod info statue.ply", "is it closed, how many pieces"},
            {"lod info tower.glb", "what a scene draws; instances count each time"},
            {"lod info statue.glb --json", "all figures as JSON"}},
@@ -126,7 +127,7 @@ VerbSpec convert_spec() {
   return {"convert",
           "Writes a model in another format.",
           {"INPUT [OUTPUT]", 1, 2, {}, Completion::file},
-          {output_group(true), general_group()},
+          {volume_group(), output_group(true), general_group()},
           {{"lod convert statue.ply statue.stl", "by the names' endings"},
            {"lod convert tower.glb -o tower.ply", "instances are flattened where the format has none"},
            {"lod convert statue.ply -o packed.glb --compress meshopt", "a smaller GLB"}},

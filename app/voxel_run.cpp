@@ -20,6 +20,9 @@ Result<VoxelRequest> voxel_request(const Arguments& arguments, const char* verb)
   if (!resolution) return fail(resolution.error());
   request.resolution = *resolution;
   request.fill = fill_of(arguments);
+  Result<VolumeRequest> volume = volume_request(arguments);
+  if (!volume) return fail(volume.error());
+  request.volume = std::move(*volume);
   request.compression = compression_of(arguments);
   const Result<void> checked = check_output(request.output, {request.input}, request.compression);
   if (!checked) return fail(checked.error());
@@ -27,7 +30,7 @@ Result<VoxelRequest> voxel_request(const Arguments& arguments, const char* verb)
 }
 
 Result<Model> read_solid(const VoxelRequest& request, VoxelReport& report, const Console& console) {
-  Result<Model> model = read_input(request.input, console, console.task().part(0.1, "reading"));
+  Result<Model> model = read_input(request.input, console, console.task().part(0.1, "reading"), {}, request.volume);
   if (!model) return model;
   if (const Result<void> kept = io::check_replaced(*model, request.output); !kept) return fail(kept.error());
   report.input = request.input;

@@ -9,6 +9,7 @@
 #include "app/command_line.h"
 #include "app/console.h"
 #include "app/reports.h"
+#include "app/volume_input.h"
 #include "lodestone/base/result.h"
 #include "lodestone/core/model.h"
 #include "lodestone/io/write.h"
@@ -20,6 +21,7 @@ struct VoxelRequest {
   std::string input, output;
   std::uint32_t resolution = 0;
   std::optional<voxel::FillRule> fill;
+  VolumeRequest volume;  ///< where the input is one
   io::Compression compression = io::Compression::none;
 };
 

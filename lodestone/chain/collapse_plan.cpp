@@ -199,6 +199,7 @@ Result<Model> CollapsePlan::model_after(std::size_t count, Task task) const {
   model.materials = original_->materials;
   model.document = original_->document;
   model.meters_per_unit = original_->meters_per_unit;
+  model.gltf_axes = original_->gltf_axes;
   model.uv_origin_top = original_->uv_origin_top;
   const double share = 1.0 / static_cast<double>(std::max<std::size_t>(1, logs_.size()));
   for (std::size_t m = 0; m < logs_.size(); ++m) {

@@ -33,6 +33,7 @@ struct Model {
   std::vector<Material> materials;
   std::shared_ptr<const io::Document> document;
   double meters_per_unit = 0;  ///< 1 for glTF; 0 = the file doesn't say
+  Mat4d gltf_axes;             ///< turns the world so that Y is up and Z forward, as glTF wants it; mostly the identity
   /// True where v = 0 is the image's top row (glTF); false where it is the bottom one (OBJ, PLY). UVs are kept as the
   /// file had them; writers of the other kind turn them: v' = 1 - v.
   bool uv_origin_top = false;

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lodestone/math/vec.h"
@@ -50,6 +51,18 @@ struct BitVolume {
   }
 };
 
+/// A number a voxel, x fastest, wherever the numbers live.
+template <class T>
+struct VolumeView {
+  VoxelGrid grid;
+  std::span<const T> values;
+
+  std::size_t index(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
+    return (std::size_t{z} * grid.size[1] + y) * grid.size[0] + x;
+  }
+  T at(std::uint32_t x, std::uint32_t y, std::uint32_t z) const { return values[index(x, y, z)]; }
+};
+
 /// A number a voxel, x fastest.
 template <class T>
 struct ScalarVolume {
@@ -60,6 +73,8 @@ struct ScalarVolume {
     return (std::size_t{z} * grid.size[1] + y) * grid.size[0] + x;
   }
   T at(std::uint32_t x, std::uint32_t y, std::uint32_t z) const { return values[index(x, y, z)]; }
+  VolumeView<T> view() const { return {grid, values}; }
+  operator VolumeView<T>() const { return view(); }
 };
 
 }  // namespace lodestone

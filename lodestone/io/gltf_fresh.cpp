@@ -38,6 +38,24 @@ Json fresh_node(const Instance& instance, const Mesh& mesh) {
   return out;
 }
 
+// What the world needs to be in metres, with Y up.
+Mat4d world_to_gltf(const Model& model) {
+  const double metres = model.meters_per_unit > 0 ? model.meters_per_unit : 1;
+  return Mat4d::scale({metres, metres, metres}) * model.gltf_axes;
+}
+
+// One node above all others.
+void add_root(const Mat4d& transform, Json& json, Json& roots) {
+  Json root = {{"name", "to_metres_and_y_up"}, {"children", std::move(roots)}};
+  if (transform == Mat4d::scale({transform.m[0], transform.m[0], transform.m[0]})) {
+    root["scale"] = {transform.m[0], transform.m[0], transform.m[0]};
+  } else {
+    root["matrix"] = transform.m;
+  }
+  roots = Json::array({json["nodes"].size()});
+  json["nodes"].push_back(std::move(root));
+}
+
 }  // namespace
 
 Json make_fresh_document(const Model& model) {
@@ -48,6 +66,8 @@ Json make_fresh_document(const Model& model) {
     json["nodes"].push_back(fresh_node(model.instances[i], model.meshes[model.instances[i].mesh]));
     roots.push_back(i);
   }
+  const Mat4d transform = world_to_gltf(model);
+  if (!transform.is_identity()) add_root(transform, json, roots);
   json["scenes"] = Json::array({{{"nodes", std::move(roots)}}});
   json["meshes"] = Json::array();
   for (const Mesh& mesh : model.meshes) json["meshes"].push_back(fresh_mesh(mesh));

@@ -69,13 +69,13 @@ void set_row(const T* values, std::uint32_t count, T limit, std::span<std::uint6
 }
 
 template <class T>
-InsideRows inside_rows(const ScalarVolume<T>& volume, double iso, const Task& task) {
+InsideRows inside_rows(const VolumeView<T>& volume, double iso, const Task& task) {
   const auto& size = volume.grid.size;
   InsideRows rows(size[0], size[1], size[2]);
-  // For whole numbers v > iso is v > floor(iso), which needs no conversion. Where that is below 0, all are inside.
+  // For whole numbers v > iso is v > floor(iso), which needs no conversion. Where that is below the least, all are inside.
   constexpr bool kWhole = !std::is_floating_point_v<T>;
   if (kWhole && iso >= static_cast<double>(std::numeric_limits<T>::max())) return rows;
-  const bool all = kWhole && iso < 0;
+  const bool all = kWhole && iso < static_cast<double>(std::numeric_limits<T>::lowest());
   const T limit = all ? T{0} : static_cast<T>(kWhole ? std::floor(iso) : iso);
   const std::vector<T> ones(all ? size[0] : 0, T{1});
   parallel_for(size[2], 1, task, [&](std::size_t z, std::size_t, std::size_t) {
@@ -129,7 +129,7 @@ VertexNumbers number_vertices(const InsideRows& rows, const Task& task) {
 
 // Where along the edge from a voxel to the next the values reach iso; half way to what lies outside of the volume.
 template <class T>
-double share_between(const ScalarVolume<T>& volume, const std::array<std::uint32_t, 3>& padded, std::size_t axis,
+double share_between(const VolumeView<T>& volume, const std::array<std::uint32_t, 3>& padded, std::size_t axis,
                      double iso) {
   std::array<std::uint32_t, 3> next = padded;
   ++next[axis];
@@ -142,7 +142,7 @@ double share_between(const ScalarVolume<T>& volume, const std::array<std::uint32
 }
 
 template <class T>
-void place_vertices(const ScalarVolume<T>& volume, const InsideRows& rows, const VertexNumbers& numbers, double iso,
+void place_vertices(const VolumeView<T>& volume, const InsideRows& rows, const VertexNumbers& numbers, double iso,
                     Mesh& mesh, const Task& task) {
   const auto& size = volume.grid.size;
   mesh.offset = volume.grid.point({size[0] / 2.0, size[1] / 2.0, size[2] / 2.0});
@@ -263,7 +263,7 @@ void make_triangles(const InsideRows& rows, const VertexNumbers& numbers, Mesh& 
 }
 
 template <class T>
-Result<Mesh> surface_of(const ScalarVolume<T>& volume, const IsosurfaceOptions& options, const Task& task) {
+Result<Mesh> surface_of(const VolumeView<T>& volume, const IsosurfaceOptions& options, const Task& task) {
   const auto& size = volume.grid.size;
   if (!std::isfinite(options.iso)) return fail(ErrorCode::bad_argument, "the iso value is not a finite number");
   if (volume.values.size() != volume.grid.count() || volume.grid.count() == 0 ||
@@ -290,13 +290,16 @@ Result<Mesh> surface_of(const ScalarVolume<T>& volume, const IsosurfaceOptions& 
 
 }  // namespace
 
-Result<Mesh> isosurface(const ScalarVolume<std::uint8_t>& volume, const IsosurfaceOptions& options, Task task) {
+Result<Mesh> isosurface(const VolumeView<std::uint8_t>& volume, const IsosurfaceOptions& options, Task task) {
   return surface_of(volume, options, task);
 }
-Result<Mesh> isosurface(const ScalarVolume<std::uint16_t>& volume, const IsosurfaceOptions& options, Task task) {
+Result<Mesh> isosurface(const VolumeView<std::int16_t>& volume, const IsosurfaceOptions& options, Task task) {
   return surface_of(volume, options, task);
 }
-Result<Mesh> isosurface(const ScalarVolume<float>& volume, const IsosurfaceOptions& options, Task task) {
+Result<Mesh> isosurface(const VolumeView<std::uint16_t>& volume, const IsosurfaceOptions& options, Task task) {
+  return surface_of(volume, options, task);
+}
+Result<Mesh> isosurface(const VolumeView<float>& volume, const IsosurfaceOptions& options, Task task) {
   return surface_of(volume, options, task);
 }
 

@@ -22,10 +22,9 @@ struct IsosurfaceOptions {
 /// O(voxels + triangles), memory a bit a voxel and 12 bytes a row on top of the mesh. Errors: bad_argument (an iso that
 /// is not finite, fewer values than voxels), empty (no voxel inside), unsupported (more vertices than a mesh can name),
 /// cancelled.
-Result<Mesh> isosurface(const ScalarVolume<std::uint8_t>& volume, const IsosurfaceOptions& options = {},
-                        Task task = {});
-Result<Mesh> isosurface(const ScalarVolume<std::uint16_t>& volume, const IsosurfaceOptions& options = {},
-                        Task task = {});
-Result<Mesh> isosurface(const ScalarVolume<float>& volume, const IsosurfaceOptions& options = {}, Task task = {});
+Result<Mesh> isosurface(const VolumeView<std::uint8_t>& volume, const IsosurfaceOptions& options = {}, Task task = {});
+Result<Mesh> isosurface(const VolumeView<std::int16_t>& volume, const IsosurfaceOptions& options = {}, Task task = {});
+Result<Mesh> isosurface(const VolumeView<std::uint16_t>& volume, const IsosurfaceOptions& options = {}, Task task = {});
+Result<Mesh> isosurface(const VolumeView<float>& volume, const IsosurfaceOptions& options = {}, Task task = {});
 
 }  // namespace lodestone::voxel

@@ -1,0 +1,248 @@
+#include "app/volume_input.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <system_error>
+
+#include "app/child_process.h"
+#include "app/volume_report.h"
+#include "lodestone/base/file.h"
+#include "lodestone/base/mapped_file.h"
+
+namespace lodestone::app {
+namespace fs = std::filesystem;
+
+OptionGroup volume_group() {
+  return {"Volumes (CT, MRI, stacks of slices)",
+          {{"--iso",
+            "",
+            "V",
+            "",
+            "the volume's values, such as Hounsfield units",
+            "the surface at this value; what is above is inside (without: Otsu's threshold)",
+            {},
+            Completion::none},
+           {"--labels", "", "", "", "", "values are labels: a mesh for each but 0", {}, Completion::none},
+           {"--smooth",
+            "",
+            "R",
+            "",
+            "voxels, or millimetres: 1.5mm",
+            "blur values by a Gaussian of this standard deviation first",
+            {},
+            Completion::none},
+           {"--median",
+            "",
+            "",
+            "",
+            "",
+            "take the median of 3 x 3 x 3 values first, against speckles",
+            {},
+            Completion::none},
+           {"--series",
+            "",
+            "S",
+            "",
+            "",
+            "which series of a folder: its number in the list, or its UID",
+            {},
+            Completion::none},
+           {"--raw", "", "X,Y,Z", "", "voxels", "the file holds bare values of so many voxels", {}, Completion::none},
+           {"--raw-type",
+            "",
+            "T",
+            "uint8",
+            "",
+            "their type; with 'be' at its end, big-endian, such as int16be",
+            {"uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64", "uint16be", "int16be",
+             "uint32be", "int32be", "float32be", "float64be"},
+            Completion::choices},
+           {"--raw-spacing", "", "X,Y,Z", "1,1,1", "millimetres", "size of a voxel", {}, Completion::none},
+           {"--raw-skip", "", "N", "0", "bytes", "before the first value", {}, Completion::none}}};
+}
+
+namespace {
+
+tl::unexpected<Error> bad_value(const char* option, const std::string& text, const char* remedy) {
+  return fail(ErrorCode::bad_argument, fmt::format("{} {} can't be read", option, text), {}, remedy);
+}
+
+// Three numbers with commas between them.
+Result<Vec3d> triple(const Arguments& arguments, const char* option) {
+  const std::string text = arguments.text(option);
+  Vec3d out;
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::string word = text.substr(at, end - at);
+    char* rest = nullptr;
+    out[k] = std::strtod(word.c_str(), &rest);
+    const bool last = k == 2;
+    if (word.empty() || *rest != '\0' || !std::isfinite(out[k]) || (end == text.size()) != last) {
+      return bad_value(option, text, "use three numbers, such as 256,256,128");
+    }
+    at = end + 1;
+  }
+  return out;
+}
+
+Result<io::RawLayout> raw_layout(const Arguments& arguments) {
+  io::RawLayout raw;
+  const Result<Vec3d> size = triple(arguments, "--raw");
+  if (!size) return fail(size.error());
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!((*size)[k] >= 1) || (*size)[k] > 65'535 || (*size)[k] != std::floor((*size)[k])) {
+      return bad_value("--raw", arguments.text("--raw"), "use three counts of voxels, 1 to 65535 each");
+    }
+    raw.size[k] = static_cast<std::uint32_t>((*size)[k]);
+  }
+  const Result<Vec3d> spacing = triple(arguments, "--raw-spacing");
+  if (!spacing) return fail(spacing.error());
+  if (!(spacing->x > 0 && spacing->y > 0 && spacing->z > 0)) {
+    return bad_value("--raw-spacing", arguments.text("--raw-spacing"), "use sizes above 0");
+  }
+  raw.spacing = *spacing;
+  raw.type = arguments.text("--raw-type");
+  if (raw.type.ends_with("be")) {
+    raw.type.resize(raw.type.size() - 2);
+    raw.big_endian = true;
+  }
+  const Result<std::uint64_t> skip = arguments.count("--raw-skip", 0, std::uint64_t{1} << 40);
+  if (!skip) return fail(skip.error());
+  raw.skip_bytes = *skip;
+  return raw;
+}
+
+Result<void> read_smoothing(const Arguments& arguments, chain::VolumeSurfaceOptions& options) {
+  options.median = arguments.has("--median");
+  if (!arguments.has("--smooth")) return {};
+  const std::string text = arguments.text("--smooth");
+  char* rest = nullptr;
+  options.smooth = std::strtod(text.c_str(), &rest);
+  const std::string unit = rest;
+  if (rest == text.c_str() || !(options.smooth > 0) || options.smooth > 1000 || (!unit.empty() && unit != "mm")) {
+    return bad_value("--smooth", text, "use voxels, such as 1.5, or millimetres, such as 2mm");
+  }
+  options.smooth_in_voxels = unit.empty();
+  return {};
+}
+
+// The program stands beside this one, or, when installed, in ../libexec/lodestone.
+Result<fs::path> reader_program() {
+  std::error_code error;
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  for (const fs::path& place : {self.parent_path() / kVolumeReader,
+                                self.parent_path().parent_path() / "libexec" / "lodestone" / kVolumeReader}) {
+    if (::access(place.c_str(), X_OK) == 0) return place;
+  }
+  return fail(ErrorCode::unsupported, fmt::format("the program {} that reads volumes is not installed", kVolumeReader),
+              self.parent_path().string(), "install it beside lod");
+}
+
+std::uint64_t bytes_of(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) return fs::file_size(path, ignored);
+  std::uint64_t sum = 0;
+  std::error_code error;
+  for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->is_regular_file(ignored)) sum += entry->file_size(ignored);
+  }
+  return sum;
+}
+
+template <class T>
+std::span<const T> typed(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
+}
+
+VolumeValues typed_values(std::span<const std::byte> bytes, io::VoxelType type) {
+  switch (type) {
+    case io::VoxelType::uint8:
+      return typed<std::uint8_t>(bytes);
+    case io::VoxelType::int16:
+      return typed<std::int16_t>(bytes);
+    case io::VoxelType::uint16:
+      return typed<std::uint16_t>(bytes);
+    case io::VoxelType::float32:
+      break;
+  }
+  return typed<float>(bytes);
+}
+
+Result<ScannedVolume> read_in_child(const fs::path& path, const VolumeRequest& request, const Task& task) {
+  std::error_code missing;
+  if (!fs::exists(path, missing)) return fail(ErrorCode::cannot_read, "there is no such file", path.string());
+  const Result<fs::path> program = reader_program();
+  if (!program) return fail(program.error());
+  const TemporaryFolder folder;
+  if (folder.path().empty()) {
+    return fail(ErrorCode::cannot_write, "no temporary folder could be made", path.string(), "set TMPDIR to one");
+  }
+  const fs::path values = folder.path() / "values";
+  const ChildLimits limits = limits_for(bytes_of(path));
+  const Result<ChildOutcome> outcome = run_child(*program, volume_words(path, values, request.read), limits, task);
+  if (!outcome) return fail(outcome.error());
+  if (outcome->end == ChildOutcome::End::cancelled) return cancelled_error("reading");
+  VolumeSaid said = parse_volume_report(outcome->report);
+  if (said.failed) return fail(std::move(said.error));
+  if (!said.done || outcome->status != 0) {
+    return fail(ErrorCode::bad_format, ending_of(*outcome, limits), path.string(),
+                "convert it to NRRD or MetaImage with the program that made it");
+  }
+  const Result<MappedFile> mapped = map_file(values);
+  if (!mapped) return fail(mapped.error());
+  ScannedVolume volume;
+  volume.header = std::move(said.header);
+  if (mapped->bytes.size() != volume.header.grid.count() * io::size_of(said.type)) {
+    return fail(ErrorCode::bad_format, "has not as many values as it says", path.string());
+  }
+  volume.values = typed_values(mapped->bytes, said.type);
+  volume.storage = mapped->mapping;
+  return volume;
+}
+
+}  // namespace
+
+Result<VolumeRequest> volume_request(const Arguments& arguments) {
+  VolumeRequest request;
+  request.read.series = arguments.text("--series");
+  request.surface.labels = arguments.has("--labels");
+  request.asked = arguments.has("--iso") || arguments.has("--raw") || request.surface.labels;
+  if (arguments.has("--iso")) {
+    const std::string text = arguments.text("--iso");
+    char* rest = nullptr;
+    const double iso = std::strtod(text.c_str(), &rest);
+    if (rest == text.c_str() || *rest != '\0' || !std::isfinite(iso)) return bad_value("--iso", text, "use a number");
+    if (request.surface.labels) {
+      return fail(ErrorCode::bad_argument, "--iso and --labels exclude each other", {}, "choose one");
+    }
+    request.surface.iso = iso;
+  }
+  if (arguments.has("--raw")) {
+    Result<io::RawLayout> raw = raw_layout(arguments);
+    if (!raw) return fail(raw.error());
+    request.read.raw = std::move(*raw);
+  }
+  if (const Result<void> ok = read_smoothing(arguments, request.surface); !ok) return fail(ok.error());
+  return request;
+}
+
+bool is_volume(const fs::path& path, const VolumeRequest& request) {
+  return request.asked || io::is_volume_name(path) || io::is_volume_folder(path);
+}
+
+Result<Model> read_volume_model(const fs::path& path, const VolumeRequest& request, Task task) {
+  const Result<ScannedVolume> volume = read_in_child(path, request, task.part(0.5, "reading"));
+  if (!volume) return fail(volume.error());
+  Result<chain::VolumeSurface> surface = chain::surface_of(*volume, request.surface, task.part(0.5, "contouring"));
+  if (!surface) {
+    Error error = surface.error();
+    if (error.where.empty()) error.where = path.string();
+    return fail(std::move(error));
+  }
+  return std::move(surface->model);
+}
+
+}  // namespace lodestone::app
