@@ -1,7 +1,6 @@
 // Which voxels are inside, a bit each, with an empty layer all around: what Marching Cubes works on.
 #pragma once
 
-#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -21,57 +20,26 @@ struct InsideRows {
 
   std::size_t row(std::uint32_t y, std::uint32_t z) const { return std::size_t{z} * height + y; }
   std::size_t rows() const { return std::size_t{height} * depth; }
-  std::span<const std::uint64_t> bits(std::size_t row) const {
-    return std::span(words).subspan(row * row_words, row_words);
-  }
-  std::span<std::uint64_t> bits(std::size_t row) { return std::span(words).subspan(row * row_words, row_words); }
-};
-
-/// Bit x of the next voxel along x.
-inline std::uint64_t next_voxels(std::span<const std::uint64_t> row, std::size_t word) {
-  return row[word] >> 1 | (word + 1 < row.size() ? row[word + 1] << 63 : 0);
-}
-
-/// Edges of one kind in a row that the surface crosses, and how many come before each word.
-class CrossedEdges {
- public:
-  explicit CrossedEdges(std::size_t words) : masks_(words), before_(words + 1) {}
-
-  void along_x(std::span<const std::uint64_t> row) {
-    fill([&](std::size_t w) { return row[w] ^ next_voxels(row, w); });
-  }
-  void between(std::span<const std::uint64_t> row, std::span<const std::uint64_t> other) {
-    fill([&](std::size_t w) { return row[w] ^ other[w]; });
+  const std::uint64_t* bits(std::size_t row) const { return words.data() + row * row_words; }
+  std::uint64_t* bits(std::size_t row) { return words.data() + row * row_words; }
+  /// Bit x of the next voxel along x.
+  std::uint64_t next_along_x(const std::uint64_t* row, std::size_t word) const {
+    return row[word] >> 1 | (word + 1 < row_words ? row[word + 1] << 63 : 0);
   }
 
-  std::uint32_t count() const { return before_.back(); }
-  std::uint32_t rank(std::uint32_t x) const {
-    const std::uint64_t below = masks_[x / 64] & ((std::uint64_t{1} << (x % 64)) - 1);
-    return before_[x / 64] + static_cast<std::uint32_t>(std::popcount(below));
-  }
-  /// Calls take(x) in order.
+  /// Calls take(x) in order for the edges along an axis, from (x, y, z) to the next voxel, whose ends differ.
   template <class Take>
-  void for_each(Take&& take) const {
-    for (std::size_t w = 0; w < masks_.size(); ++w) {
-      for (std::uint64_t left = masks_[w]; left != 0; left &= left - 1) {
+  void for_each_crossed(std::size_t axis, std::uint32_t y, std::uint32_t z, Take&& take) const {
+    if ((axis == 1 && y + 1 == height) || (axis == 2 && z + 1 == depth)) return;
+    const std::uint64_t* here = bits(row(y, z));
+    const std::uint64_t* other = axis == 1 ? bits(row(y + 1, z)) : axis == 2 ? bits(row(y, z + 1)) : here;
+    for (std::size_t w = 0; w < row_words; ++w) {
+      const std::uint64_t next = axis == 0 ? next_along_x(here, w) : other[w];
+      for (std::uint64_t left = here[w] ^ next; left != 0; left &= left - 1) {
         take(static_cast<std::uint32_t>(w * 64) + static_cast<std::uint32_t>(std::countr_zero(left)));
       }
     }
   }
-
- private:
-  template <class Mask>
-  void fill(Mask&& mask) {
-    std::uint32_t count = 0;
-    for (std::size_t w = 0; w < masks_.size(); ++w) {
-      before_[w] = count;
-      masks_[w] = mask(w);
-      count += static_cast<std::uint32_t>(std::popcount(masks_[w]));
-    }
-    before_.back() = count;
-  }
-  std::vector<std::uint64_t> masks_;
-  std::vector<std::uint32_t> before_;
 };
 
 }  // namespace lodestone::voxel::detail
