@@ -29,43 +29,44 @@ struct RowCounts {
 };
 
 // The corners of the cube at bit `bit` of word w that are inside, two at a time.
-std::uint32_t corners_at(const InsideRows& rows, const FourRows& four, std::size_t w, unsigned bit) {
+std::uint32_t corners_at(const FourRows& four, std::size_t w, unsigned bit, bool last_word) {
   std::uint32_t corners = 0;
   for (unsigned k = 0; k < 4; ++k) {
     std::uint64_t pair = four.at[k][w] >> bit;
-    if (bit == 63) pair |= (w + 1 < rows.row_words ? four.at[k][w + 1] : 0) << 1;
+    if (bit == 63 && !last_word) pair |= four.at[k][w + 1] << 1;
     corners |= static_cast<std::uint32_t>(pair & 3) << (2 * k);
   }
   return corners;
 }
 
-// Lists the cut cubes of a row and counts its crossed edges. The last row and slice have edges, but no cubes.
+std::uint32_t count_of(std::uint64_t bits) { return static_cast<std::uint32_t>(std::popcount(bits)); }
+
+// Lists the cut cubes of a row and counts the crossed edges that begin in its first row of voxels. Where no cube of a
+// word is cut, no edge of it is crossed.
 LODESTONE_CLONED void find_in_row(const InsideRows& rows, std::uint32_t y, std::uint32_t z, const CubeCase* cases,
                                   RowCounts& counts, std::vector<std::uint32_t>& cubes) {
-  const bool last_y = y + 1 == rows.height, last_z = z + 1 == rows.depth;
-  const FourRows four(rows, last_y ? y - 1 : y, last_z ? z - 1 : z);
-  const std::uint64_t* here = rows.bits(rows.row(y, z));
+  const FourRows four(rows, y, z);
+  const auto& at = four.at;
+  std::uint64_t any = at[0][0] | at[1][0] | at[2][0] | at[3][0];
+  std::uint64_t all = at[0][0] & at[1][0] & at[2][0] & at[3][0];
   for (std::size_t w = 0; w < rows.row_words; ++w) {
-    const std::uint64_t along_x = here[w] ^ rows.next_along_x(here, w);
-    counts.vertices[0] += static_cast<std::uint32_t>(std::popcount(along_x));
-    if (!last_y) {
-      counts.vertices[1] += static_cast<std::uint32_t>(std::popcount(here[w] ^ rows.bits(rows.row(y + 1, z))[w]));
-    }
-    if (!last_z) {
-      counts.vertices[2] += static_cast<std::uint32_t>(std::popcount(here[w] ^ rows.bits(rows.row(y, z + 1))[w]));
-    }
-    if (last_y || last_z) continue;
-    std::uint64_t any = 0, all = ~std::uint64_t{0};
-    for (unsigned k = 0; k < 4; ++k) {
-      const std::uint64_t next = rows.next_along_x(four.at[k], w);
-      any |= four.at[k][w] | next;
-      all &= four.at[k][w] & next;
-    }
-    for (std::uint64_t left = any & ~all; left != 0; left &= left - 1) {
+    const bool last_word = w + 1 == rows.row_words;
+    const std::uint64_t next_any = last_word ? 0 : at[0][w + 1] | at[1][w + 1] | at[2][w + 1] | at[3][w + 1];
+    const std::uint64_t next_all = last_word ? 0 : at[0][w + 1] & at[1][w + 1] & at[2][w + 1] & at[3][w + 1];
+    const std::uint64_t cut = (any | any >> 1 | next_any << 63) & ~(all & (all >> 1 | next_all << 63));
+    any = next_any;
+    all = next_all;
+    if (cut == 0) continue;
+    counts.vertices[0] += count_of(at[0][w] ^ rows.next_along_x(at[0], w));
+    counts.vertices[1] += count_of(at[0][w] ^ at[1][w]);
+    counts.vertices[2] += count_of(at[0][w] ^ at[2][w]);
+    std::size_t n = cubes.size();
+    cubes.resize(n + count_of(cut));
+    for (std::uint64_t left = cut; left != 0; left &= left - 1) {
       const auto bit = static_cast<unsigned>(std::countr_zero(left));
-      const std::uint32_t corners = corners_at(rows, four, w, bit);
+      const std::uint32_t corners = corners_at(four, w, bit, last_word);
       counts.triangles += cases[corners].triangles;
-      cubes.push_back((static_cast<std::uint32_t>(w * 64) + bit) << 8 | corners);
+      cubes[n++] = (static_cast<std::uint32_t>(w * 64) + bit) << 8 | corners;
     }
   }
 }
@@ -91,7 +92,7 @@ class RowNumbers {
     const std::uint64_t below = (std::uint64_t{1} << bit) - 1;
     std::uint32_t rank[8];
     for (std::size_t k = 0; k < 8; ++k) {
-      rank[k] = before_[k] + static_cast<std::uint32_t>(std::popcount(mask_[k] & below));
+      rank[k] = before_[k] + count_of(mask_[k] & below);
     }
     for (std::size_t k = 0; k < 4; ++k) vertex[k] = rank[k];
     // Corner 0, 1 (x + 1), 4 (z + 1), 5 for the edges along y; 0, 1, 2 (y + 1), 3 for those along z.
@@ -105,7 +106,7 @@ class RowNumbers {
 
  private:
   void enter(std::uint32_t word) {
-    for (std::size_t k = 0; k < 8; ++k) before_[k] += static_cast<std::uint32_t>(std::popcount(mask_[k]));
+    for (std::size_t k = 0; k < 8; ++k) before_[k] += count_of(mask_[k]);
     word_ = word;
     const auto& at = four_.at;
     for (std::size_t k = 0; k < 4; ++k) mask_[k] = at[k][word] ^ rows_.next_along_x(at[k], word);
@@ -146,10 +147,11 @@ Result<CubeSurface> find_surface(const InsideRows& rows, const Task& task) {
   out.cubes.resize(rows.depth);
   out.row_cubes.assign(rows.rows(), 0);
   out.first_triangle.assign(rows.depth + 1, 0);
-  parallel_for(rows.depth, 1, task, [&](std::size_t slice, std::size_t, std::size_t) {
+  // The last rows and slices belong to the layer around, where nothing is crossed.
+  parallel_for(rows.depth - 1, 1, task, [&](std::size_t slice, std::size_t, std::size_t) {
     const auto z = static_cast<std::uint32_t>(slice);
     std::vector<std::uint32_t>& cubes = out.cubes[z];
-    for (std::uint32_t y = 0; y < rows.height; ++y) {
+    for (std::uint32_t y = 0; y + 1 < rows.height; ++y) {
       const std::size_t row = rows.row(y, z), before = cubes.size();
       RowCounts counts;
       find_in_row(rows, y, z, cases, counts, cubes);

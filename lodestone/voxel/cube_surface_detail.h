@@ -33,23 +33,27 @@ Result<CubeSurface> find_surface(const InsideRows& rows, const Task& task);
 /// Fills mesh.triangles.
 void make_triangles(const InsideRows& rows, const CubeSurface& surface, Mesh& mesh, const Task& task);
 
-/// Fills mesh.positions. share(axis, x, y, z) says where from the voxel (x, y, z) of the padded rows to the next along
-/// the axis the vertex lies, 0 to 1; it is called from several threads.
-template <class Share>
+/// Fills mesh.positions. shares_of(axis, y, z) gives, for the row of edges that begin at voxels (x, y, z) of the padded
+/// rows, what says for each x where from there to the next voxel the vertex lies, 0 to 1. Called from several threads.
+template <class SharesOf>
 void place_vertices(const VoxelGrid& grid, const InsideRows& rows, const CubeSurface& surface, Mesh& mesh,
-                    const Task& task, Share&& share) {
+                    const Task& task, SharesOf&& shares_of) {
   mesh.offset = grid.point({grid.size[0] / 2.0, grid.size[1] / 2.0, grid.size[2] / 2.0});
   resize_large(mesh.positions, static_cast<std::size_t>(surface.vertices));
-  parallel_for(rows.depth, 1, task, [&](std::size_t slice, std::size_t, std::size_t) {
+  parallel_for(rows.depth - 1, 1, task, [&](std::size_t slice, std::size_t, std::size_t) {
     const auto z = static_cast<std::uint32_t>(slice);
-    for (std::uint32_t y = 0; y < rows.height; ++y) {
+    for (std::uint32_t y = 0; y + 1 < rows.height; ++y) {
       const std::size_t row = rows.row(y, z);
+      if (surface.row_cubes[row] == 0) continue;
+      const Vec3d start = grid.point({-0.5, y - 0.5, z - 0.5}) - mesh.offset;  // the layer around takes one voxel
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        std::uint32_t vertex = surface.first_vertex[axis][row];
+        const auto share = shares_of(axis, y, z);
+        Vec3f* out = mesh.positions.data() + surface.first_vertex[axis][row];
         rows.for_each_crossed(axis, y, z, [&](std::uint32_t x) {
-          Vec3d at{x - 0.5, y - 0.5, z - 0.5};  // the layer around takes one voxel
-          at[axis] += share(axis, x, y, z);
-          mesh.positions[vertex++] = to_float(grid.point(at) - mesh.offset);
+          Vec3d at = start;
+          at.x += x * grid.spacing.x;
+          at[axis] += share(x) * grid.spacing[axis];
+          *out++ = to_float(at);
         });
       }
     }

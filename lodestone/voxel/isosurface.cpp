@@ -10,7 +10,6 @@
 #include <limits>
 #include <type_traits>
 
-#include "lodestone/base/cpu.h"
 #include "lodestone/base/parallel.h"
 #include "lodestone/voxel/cube_surface_detail.h"
 #include "lodestone/voxel/inside_rows_detail.h"
@@ -46,14 +45,47 @@ std::uint64_t above(const std::uint8_t* values, std::uint8_t limit) {
 }
 #endif
 
+#if defined(__x86_64__) && defined(__GNUC__)
+#define LODESTONE_WIDE_BYTES 1
+// Thirty-two bytes at once, 64 values a word; for processors that have it.
+__attribute__((target("avx2"))) void words_above(const std::uint8_t* values, std::uint32_t words, std::uint8_t limit,
+                                                 std::uint64_t* out) {
+  using Bytes = unsigned char __attribute__((vector_size(32)));
+  using Signed = char __attribute__((vector_size(32)));
+  const Bytes most = Bytes{} + limit;
+  for (std::uint32_t w = 0; w < words; ++w) {
+    Bytes low, high;
+    std::memcpy(&low, values + w * 64, 32);
+    std::memcpy(&high, values + w * 64 + 32, 32);
+    const auto a = static_cast<std::uint32_t>(__builtin_ia32_pmovmskb256(reinterpret_cast<Signed>(low > most)));
+    const auto b = static_cast<std::uint32_t>(__builtin_ia32_pmovmskb256(reinterpret_cast<Signed>(high > most)));
+    out[w] = std::uint64_t{b} << 32 | a;
+  }
+}
+#endif
+
+// The bits of whole words of values.
+template <class T>
+void all_above(const T* values, std::uint32_t words, T limit, std::uint64_t* out) {
+#ifdef LODESTONE_WIDE_BYTES
+  if constexpr (std::is_same_v<T, std::uint8_t>) {
+    static const bool wide = __builtin_cpu_supports("avx2");
+    if (wide) return words_above(values, words, limit, out);
+  }
+#endif
+  for (std::uint32_t w = 0; w < words; ++w) out[w] = above(values + w * 64, limit);
+}
+
 // The bits of a row of voxels, one place on for the layer before them.
 template <class T>
 void set_row(const T* values, std::uint32_t count, T limit, std::uint64_t* bits, std::size_t words) {
   std::uint64_t carried = 0;
-  std::uint32_t x = 0;
+  const std::uint32_t whole = count / 64;
+  std::uint32_t x = whole * 64;
   std::size_t w = 0;
-  for (; x + 64 <= count; x += 64, ++w) {
-    const std::uint64_t word = above(values + x, limit);
+  all_above(values, whole, limit, bits);
+  for (; w < whole; ++w) {
+    const std::uint64_t word = bits[w];
     bits[w] = word << 1 | carried;
     carried = word >> 63;
   }
@@ -83,18 +115,36 @@ InsideRows inside_rows(const VolumeView<T>& volume, double iso, const Task& task
   return rows;
 }
 
-// Where along the edge from a voxel to the next the values reach iso; half way to what lies outside of the volume.
+// Where along the edges of a row the values reach iso; half way to what lies outside of the volume.
 template <class T>
-double share_between(const VolumeView<T>& volume, const std::array<std::uint32_t, 3>& padded, std::size_t axis,
-                     double iso) {
-  std::array<std::uint32_t, 3> next = padded;
-  ++next[axis];
+struct Shares {
+  const T* from = nullptr;  // value of x at [x - 1]; null: all edges lead out of the volume
+  const T* to = nullptr;
+  std::uint32_t end = 0;  // of x where the edge stays inside; it begins at `begin`
+  std::uint32_t begin = 0;
+  float iso = 0;
+
+  double operator()(std::uint32_t x) const {
+    if (x < begin || x >= end) return 0.5;
+    const auto a = static_cast<float>(from[x - 1]), b = static_cast<float>(to[x - 1]);
+    const float share = (iso - a) / (b - a);
+    return share >= 0 && share <= 1 ? static_cast<double>(share) : 0.5;  // not finite
+  }
+};
+
+template <class T>
+Shares<T> shares_of(const VolumeView<T>& volume, std::size_t axis, std::uint32_t y, std::uint32_t z, double iso) {
   const auto& size = volume.grid.size;
-  if (padded[axis] == 0 || next[axis] > size[axis]) return 0.5;
-  const auto a = static_cast<double>(volume.at(padded[0] - 1, padded[1] - 1, padded[2] - 1));
-  const auto b = static_cast<double>(volume.at(next[0] - 1, next[1] - 1, next[2] - 1));
-  const double share = (iso - a) / (b - a);
-  return share >= 0 && share <= 1 ? share : 0.5;  // not finite
+  Shares<T> out;
+  const bool inside = y >= 1 && y <= size[1] && z >= 1 && z <= size[2];
+  if (!inside || (axis == 1 && y == size[1]) || (axis == 2 && z == size[2])) return out;
+  out.from = volume.values.data() + volume.index(0, y - 1, z - 1);
+  const std::size_t step = axis == 0 ? 1 : axis == 1 ? size[0] : std::size_t{size[0]} * size[1];
+  out.to = out.from + step;
+  out.begin = 1;
+  out.end = axis == 0 ? size[0] : size[0] + 1;
+  out.iso = static_cast<float>(iso);
+  return out;
 }
 
 template <class T>
@@ -113,10 +163,9 @@ Result<Mesh> surface_of(const VolumeView<T>& volume, const IsosurfaceOptions& op
     return fail(ErrorCode::empty, fmt::format("no voxel is above {}", options.iso), {}, "choose another iso value");
   }
   Mesh mesh;
-  detail::place_vertices(volume.grid, rows, *surface, mesh, task,
-                         [&](std::size_t axis, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-                           return share_between(volume, {x, y, z}, axis, options.iso);
-                         });
+  detail::place_vertices(
+      volume.grid, rows, *surface, mesh, task,
+      [&](std::size_t axis, std::uint32_t y, std::uint32_t z) { return shares_of(volume, axis, y, z, options.iso); });
   detail::make_triangles(rows, *surface, mesh, task);
   if (task.cancelled()) return cancelled_error("contouring");
   return mesh;
