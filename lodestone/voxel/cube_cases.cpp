@@ -106,7 +106,25 @@ std::array<CubeCase, 256> make_cases() {
   return cases;
 }
 
+std::array<CubeLoops, 256> make_loops() {
+  std::array<CubeLoops, 256> all{};
+  for (unsigned inside = 0; inside < 256; ++inside) {
+    CubeLoops& out = all[inside];
+    std::size_t at = 0;
+    for (const Loop& loop : loops_of(inside)) {
+      out.length[out.count++] = static_cast<std::uint8_t>(loop.size());
+      for (const std::uint8_t edge : loop) out.edges[at++] = edge;
+    }
+  }
+  return all;
+}
+
 }  // namespace
+
+const std::array<CubeLoops, 256>& cube_loops() {
+  static const std::array<CubeLoops, 256> loops = make_loops();
+  return loops;
+}
 
 const std::array<CubeCase, 256>& cube_cases() {
   static const std::array<CubeCase, 256> cases = make_cases();

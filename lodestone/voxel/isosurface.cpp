@@ -13,6 +13,7 @@
 #include "lodestone/base/parallel.h"
 #include "lodestone/voxel/cube_surface_detail.h"
 #include "lodestone/voxel/inside_rows_detail.h"
+#include "lodestone/voxel/isosurface_detail.h"
 
 namespace lodestone::voxel {
 
@@ -148,30 +149,41 @@ Shares<T> shares_of(const VolumeView<T>& volume, std::size_t axis, std::uint32_t
 }
 
 template <class T>
-Result<Mesh> surface_of(const VolumeView<T>& volume, const IsosurfaceOptions& options, const Task& task) {
+Result<detail::Contour> contour_of(const VolumeView<T>& volume, double iso, const Task& task) {
   const auto& size = volume.grid.size;
-  if (!std::isfinite(options.iso)) return fail(ErrorCode::bad_argument, "the iso value is not a finite number");
+  if (!std::isfinite(iso)) return fail(ErrorCode::bad_argument, "the iso value is not a finite number");
   if (volume.values.size() != volume.grid.count() || volume.grid.count() == 0 ||
       *std::max_element(size.begin(), size.end()) > 65'535) {
     return fail(ErrorCode::bad_argument, fmt::format("{} values are no volume of {} x {} x {} voxels",
                                                      volume.values.size(), size[0], size[1], size[2]));
   }
-  const InsideRows rows = inside_rows(volume, options.iso, task);
-  const Result<detail::CubeSurface> surface = detail::find_surface(rows, task);
+  InsideRows rows = inside_rows(volume, iso, task);
+  Result<detail::CubeSurface> surface = detail::find_surface(rows, task);
   if (!surface) return fail(surface.error());
   if (surface->vertices == 0) {
-    return fail(ErrorCode::empty, fmt::format("no voxel is above {}", options.iso), {}, "choose another iso value");
+    return fail(ErrorCode::empty, fmt::format("no voxel is above {}", iso), {}, "choose another iso value");
   }
   Mesh mesh;
   detail::place_vertices(
       volume.grid, rows, *surface, mesh, task,
-      [&](std::size_t axis, std::uint32_t y, std::uint32_t z) { return shares_of(volume, axis, y, z, options.iso); });
+      [&](std::size_t axis, std::uint32_t y, std::uint32_t z) { return shares_of(volume, axis, y, z, iso); });
   detail::make_triangles(rows, *surface, mesh, task);
   if (task.cancelled()) return cancelled_error("contouring");
-  return mesh;
+  return detail::Contour{std::move(rows), std::move(*surface), std::move(mesh)};
+}
+
+template <class T>
+Result<Mesh> surface_of(const VolumeView<T>& volume, const IsosurfaceOptions& options, const Task& task) {
+  Result<detail::Contour> made = contour_of(volume, options.iso, task);
+  if (!made) return fail(made.error());
+  return std::move(made->mesh);
 }
 
 }  // namespace
+
+Result<detail::Contour> detail::contour(const VolumeView<std::uint8_t>& volume, double iso, const Task& task) {
+  return contour_of(volume, iso, task);
+}
 
 Result<Mesh> isosurface(const VolumeView<std::uint8_t>& volume, const IsosurfaceOptions& options, Task task) {
   return surface_of(volume, options, task);

@@ -135,4 +135,32 @@ Result<ScalarVolume<std::uint8_t>> downsample(const BitVolume& volume, const std
   return out;
 }
 
+Result<ScalarVolume<std::uint8_t>> downsample_thin(const BitVolume& volume, const std::array<std::uint32_t, 3>& size,
+                                                   Task task) {
+  Result<ScalarVolume<std::uint8_t>> shares = downsample(volume, size, task);
+  if (!shares) return shares;
+  // A share of less than 1/510 has been rounded to 0 and stays outside unless its voxels are looked at again.
+  const auto& old = volume.grid.size;
+  const std::vector<std::uint32_t> xs = cuts(old[0], size[0]), ys = cuts(old[1], size[1]), zs = cuts(old[2], size[2]);
+  parallel_for(size[2], 1, task, [&](std::size_t slice, std::size_t, std::size_t) {
+    const auto z = static_cast<std::uint32_t>(slice);
+    std::vector<std::uint64_t> any(volume.row_words);
+    for (std::uint32_t y = 0; y < size[1]; ++y) {
+      std::fill(any.begin(), any.end(), 0);
+      for (std::uint32_t fine_z = zs[z]; fine_z < zs[z + 1]; ++fine_z) {
+        for (std::uint32_t fine_y = ys[y]; fine_y < ys[y + 1]; ++fine_y) {
+          const std::uint64_t* row = volume.words.data() + volume.row_of(fine_y, fine_z);
+          for (std::size_t w = 0; w < any.size(); ++w) any[w] |= row[w];
+        }
+      }
+      std::uint8_t* values = shares->values.data() + shares->index(0, y, z);
+      for (std::uint32_t x = 0; x < size[0]; ++x) {
+        if (values[x] < 128 && set_between(any.data(), xs[x], xs[x + 1]) > 0) values[x] = 128;
+      }
+    }
+  });
+  if (task.cancelled()) return cancelled_error("resampling");
+  return shares;
+}
+
 }  // namespace lodestone::voxel

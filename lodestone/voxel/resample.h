@@ -22,4 +22,9 @@ double voxel_value(const BitVolume& volume, Vec3d at);
 Result<ScalarVolume<std::uint8_t>> downsample(const BitVolume& volume, const std::array<std::uint32_t, 3>& size,
                                               Task task = {});
 
+/// As downsample(), but a larger voxel in which any is set counts as inside at 127.5, so that what is thinner than it
+/// stays: shares below a half are raised to just above it.
+Result<ScalarVolume<std::uint8_t>> downsample_thin(const BitVolume& volume, const std::array<std::uint32_t, 3>& size,
+                                                   Task task = {});
+
 }  // namespace lodestone::voxel
