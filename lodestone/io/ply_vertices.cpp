@@ -210,6 +210,7 @@ class VertexReader {
           make_stream(s.name, s.semantic, static_cast<std::uint32_t>(s.properties.size()), s.type, s.normalized, count);
       stream.set = s.set;
       mesh_.attributes.push_back(std::move(stream));
+      if (count == 0) continue;  // nothing to point at
       for (std::size_t c = 0; c < s.properties.size(); ++c) {
         bind(columns_[s.properties[c]], mesh_.attributes.back(), c);
       }
