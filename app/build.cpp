@@ -15,6 +15,7 @@
 #include "app/verbs.h"
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
+#include "lodestone/io/flatten.h"
 #include "lodestone/io/image_decode.h"
 
 namespace lodestone::app {
@@ -75,6 +76,19 @@ Result<chain::LadderOptions> prepare_job(const BuildPlan& plan, Model& model, Bu
   return options;
 }
 
+// By voxels the original is one mesh, as each level is.
+Result<chain::LadderResult> make_levels(Model model, const BuildPlan& plan, const chain::LadderOptions& options,
+                                        BuildReport& report, const Console& console, const Task& task) {
+  if (!plan.voxel) return chain::build_ladder(std::move(model), options, task);
+  std::vector<std::string> warnings;
+  Model one = io::flattened(std::move(model), warnings);
+  Result<chain::LadderResult> result = chain::build_voxel_ladder(
+      std::move(one), options, plan.voxel->voxel, plan.voxel->then_collapse, plan.voxel->resolution, warnings, task);
+  report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
+  for (const std::string& warning : warnings) console.note(fmt::format("{}: {}", report.input, warning));
+  return result;
+}
+
 // Levels first, then the page that tells of them.
 Result<void> write_job(const BuildJob& job, const BuildPlan& plan, const chain::LadderResult& result,
                        std::optional<ReportPage>& page, BuildReport& report, Console& console, const Task& task) {
@@ -107,8 +121,8 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   report.read_seconds = watch.lap();
   const Result<chain::LadderOptions> options = prepare_job(plan, *model, report, warnings, console, task);
   if (!options) return fail(options.error());
-  const Result<chain::LadderResult> result =
-      chain::build_ladder(std::move(*model), *options, task.part(plan.report ? 0.5 : 0.8, "making levels"));
+  const Result<chain::LadderResult> result = make_levels(std::move(*model), plan, *options, report, console,
+                                                         task.part(plan.report ? 0.5 : 0.8, "making levels"));
   if (!result) return fail(result.error());
   report.levels_seconds = result->simplify_seconds;
   report.measure_seconds = result->measure_seconds;

@@ -61,6 +61,9 @@ Result<BuildPlan> build_plan(const Arguments& arguments) {
   Result<VolumeRequest> volume = volume_request(arguments);
   if (!volume) return fail(volume.error());
   plan.volume = std::move(*volume);
+  const Result<std::optional<VoxelMethod>> voxel = voxel_method(arguments);
+  if (!voxel) return fail(voxel.error());
+  plan.voxel = *voxel;
   plan.compression = compression_of(arguments);
   plan.image_error = arguments.has("--image-error");
   plan.report = arguments.has("--report");

@@ -8,6 +8,7 @@
 #include "app/influence.h"
 #include "app/shared_options.h"
 #include "app/volume_input.h"
+#include "app/voxel_method.h"
 #include "lodestone/chain/build_ladder.h"
 #include "lodestone/report/html_report.h"
 
@@ -25,6 +26,7 @@ struct BuildPlan {
   InfluencePlan influence;
   measure::DistanceOptions distance;
   VolumeRequest volume;
+  std::optional<VoxelMethod> voxel;           ///< --method voxel
   bool image_error = false;                   ///< --image-error
   bool report = false;                        ///< --report
   std::vector<report::ReportOption> options;  ///< all that was asked, for the report

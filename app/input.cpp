@@ -26,6 +26,7 @@ Result<Model> read_input(const fs::path& path, const Console& console, Task task
   }
   const auto read = [&]() -> Result<Model> {
     if (slices) return read_volume_model(path, volume, task);
+    if (is_scan(path)) return read_scan_model(path, volume, task);
     return io::is_foreign_extension(path.extension().string()) ? read_foreign(path, task)
                                                                : io::read_model(path, options, task);
   };

@@ -321,6 +321,10 @@ std::string to_json(const VoxelReport& report) {
   json["input"] = {{"path", report.input}, {"triangles", report.triangles_in}};
   json["resolution"] = report.resolution;
   json["voxels_inside"] = report.voxels_inside;
+  if (report.level_resolution > 0) {
+    json["method"] = report.method;
+    json["surface_resolution"] = report.level_resolution;
+  }
   json["fill"] = report.fill;
   json["fill_reason"] = report.fill_reason;
   json["triangles"] = report.triangles;
@@ -337,10 +341,12 @@ std::string to_json(const VoxelReport& report) {
                      {"voxelize", report.voxelize_seconds},
                      {"resample", report.resample_seconds},
                      {"isosurface", report.isosurface_seconds},
+                     {"collapse", report.collapse_seconds},
                      {"measure", report.measure_seconds},
                      {"write", report.write_seconds},
                      {"total", report.total_seconds}};
   json["peak_memory_bytes"] = report.peak_memory_bytes;
+  json["shortfall"] = report.shortfall.empty() ? Json(nullptr) : Json(report.shortfall);
   json["warnings"] = report.warnings;
   return text_of(json);
 }

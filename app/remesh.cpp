@@ -1,4 +1,7 @@
 #include "lodestone/chain/remesh.h"
+
+#include <fmt/format.h>
+
 #include "app/json.h"
 #include "app/shared_options.h"
 #include "app/verbs.h"
@@ -8,50 +11,90 @@
 
 namespace lodestone::app {
 
-Result<ExitCode> run_remesh(const Arguments& arguments, Console& console) {
-  const Result<VoxelRequest> request = voxel_request(arguments, "remesh");
-  if (!request) return fail(request.error());
+namespace {
+
+// The target, for a model whose size is known.
+Result<chain::RemeshOptions> remesh_options(const Arguments& arguments, const LengthRules& lengths,
+                                            const Model& model) {
   chain::RemeshOptions options;
-  options.resolutions = {request->resolution};
-  options.fill = request->fill;
-  options.project = !arguments.has("--no-project");
-  if (arguments.has("--supersample")) {
-    const Result<std::uint64_t> supersample = arguments.count("--supersample", 1, 64);
-    if (!supersample) return fail(supersample.error());
-    options.supersample = static_cast<std::uint32_t>(*supersample);
+  const Result<std::string> target = given_target(arguments, {"--triangles", "--error"}, "choose one");
+  if (!target) return fail(target.error());
+  options.then_collapse = arguments.has("--then-collapse");
+  if (arguments.has("--resolution") || target->empty()) {
+    const Result<std::uint32_t> resolution = resolution_of(arguments);
+    if (!resolution) return fail(resolution.error());
+    options.resolution = *resolution;
   }
+  if (*target == "--triangles") {
+    const Result<std::uint64_t> count = arguments.count("--triangles", 4, std::uint64_t{1} << 32);
+    if (!count) return fail(count.error());
+    options.triangles = *count;
+  }
+  if (*target == "--error") {
+    const Result<std::vector<LengthArgument>> error = length_list(arguments, "--error", lengths);
+    if (!error) return fail(error.error());
+    if (error->size() != 1) return fail(ErrorCode::bad_argument, "--error takes one value here");
+    const Result<std::vector<double>> units = to_model_units(*error, model, bounds_of(model).diagonal());
+    if (!units) return fail(units.error());
+    options.error = units->front();
+  }
+  const Result<chain::VoxelOptions> voxel = voxel_options(arguments, lengths, model);
+  if (!voxel) return fail(voxel.error());
+  options.voxel = *voxel;
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
   if (!distance) return fail(distance.error());
   options.distance = *distance;
+  return options;
+}
 
+void add_result(const chain::RemeshResult& result, VoxelReport& report) {
+  report.resolution = result.resolution;
+  report.level_resolution = result.level_resolution;
+  report.voxels_inside = result.voxels_inside;
+  report.fill = name_of(result.fill.fill);
+  report.fill_reason = result.fill.reason;
+  report.triangles = result.level.triangles;
+  report.error = result.level.error;
+  report.method = result.level.method;
+  report.shortfall = result.shortfall;
+  report.prepare_seconds = result.seconds.prepare;
+  report.voxelize_seconds = result.seconds.voxelize;
+  report.resample_seconds = result.seconds.resample;
+  report.isosurface_seconds = result.seconds.isosurface;
+  report.collapse_seconds = result.seconds.collapse;
+  report.measure_seconds = result.seconds.measure;
+}
+
+}  // namespace
+
+Result<ExitCode> run_remesh(const Arguments& arguments, Console& console) {
+  Result<VoxelRequest> request = voxel_request(arguments, "remesh");
+  if (!request) return fail(request.error());
+  const Result<LengthRules> lengths = length_rules(arguments);
+  if (!lengths) return fail(lengths.error());
   Stopwatch watch;
   VoxelReport report;
-  const Result<Model> model = read_solid(*request, report, console);
+  Result<Model> model = read_solid(*request, report, console);
   if (!model) return fail(model.error());
+  apply_unit(*model, *lengths);
+  report.unit = unit_name(model->meters_per_unit);
   report.read_seconds = watch.lap();
-  const Result<chain::RemeshResult> result = chain::remesh(*model, options, console.task().part(0.8, "remeshing"));
-  if (!result) return fail(result.error());
-  const Level& level = result->levels.front();
-  report.resolution = result->resolution;
-  report.voxels_inside = result->voxels_inside;
-  report.fill = name_of(result->fill.fill);
-  report.fill_reason = result->fill.reason;
-  report.triangles = level.triangles;
-  report.error = level.error;
-  report.prepare_seconds = result->seconds.prepare;
-  report.voxelize_seconds = result->seconds.voxelize;
-  report.resample_seconds = result->seconds.resample;
-  report.isosurface_seconds = result->seconds.isosurface;
-  report.measure_seconds = result->seconds.measure;
+  const Result<chain::RemeshOptions> options = remesh_options(arguments, *lengths, *model);
+  if (!options) return fail(options.error());
+  Result<chain::RemeshResult> result = chain::remesh(*model, *options, console.task().part(0.8, "remeshing"));
+  if (!result) return fail(with_place(result.error(), report.input));
+  add_result(*result, report);
   tell(report, result->warnings, console);
   watch.lap();
-  if (const Result<void> written = write_surface(level.model, *request, report, console); !written) {
+  if (const Result<void> written = write_surface(result->level.model, *request, report, console); !written) {
     return fail(written.error());
   }
   report.write_seconds = watch.lap();
   report.total_seconds = watch.total();
   console.result(arguments.has("--json") ? to_json(report) : table_of(report));
-  return ExitCode::done;
+  if (report.shortfall.empty()) return ExitCode::done;
+  console.shortfall(fmt::format("{}: {}", report.input, report.shortfall));
+  return ExitCode::fell_short;
 }
 
 }  // namespace lodestone::app

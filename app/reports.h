@@ -79,15 +79,16 @@ struct AttributeReport {
   bool normalized = false;
 };
 
-/// remesh and voxelize.
+/// remesh, voxelize and boolean.
 struct VoxelReport {
-  std::string input, output, unit, fill, fill_reason;
-  std::array<std::uint32_t, 3> resolution{};
+  std::string input, output, unit, fill, fill_reason, method, shortfall;
+  std::array<std::uint32_t, 3> resolution{};  ///< of the solid
+  std::uint32_t level_resolution = 0;         ///< of the surface, along the longest side; 0 for cubes
   std::uint64_t voxels_inside = 0;
   std::size_t triangles_in = 0, triangles = 0;
   std::optional<LevelError> error;  ///< remesh only
   double read_seconds = 0, prepare_seconds = 0, voxelize_seconds = 0, resample_seconds = 0, isosurface_seconds = 0,
-         measure_seconds = 0, write_seconds = 0, total_seconds = 0;
+         collapse_seconds = 0, measure_seconds = 0, write_seconds = 0, total_seconds = 0;
   std::uint64_t bytes = 0, peak_memory_bytes = 0;
   std::vector<std::string> warnings;
 };

@@ -9,6 +9,7 @@
 #include "app/shared_options.h"
 #include "app/verbs.h"
 #include "app/volume_input.h"
+#include "app/voxel_method.h"
 #include "app/voxel_options.h"
 
 namespace lodestone::app {
@@ -24,8 +25,9 @@ VerbSpec build_spec() {
       "build",
       "Makes a ladder of levels from a model and measures each level's error against the original.",
       {"INPUT...", 1, kAnyNumber, {}, Completion::file},
-      {ladder_target_group(), view_group(), length_group(), method_group(), level_attributes_group(), volume_group(),
-       with_image_error(measuring_group(kBuildSamples)), with_report(output_group(true)), general_group()},
+      {ladder_target_group(), view_group(), length_group(), method_group(), level_attributes_group(),
+       voxel_method_group(), volume_group(), scan_group(true), with_image_error(measuring_group(kBuildSamples)),
+       with_report(output_group(true)), general_group()},
       {{"lod build statue.ply -o statue.glb", "five levels in one GLB (MSFT_lod), each with half the triangles"},
        {"lod build statue.ply -o statue_LOD{level}.obj --error 0.05%,0.2%,1%",
         "a file a level, each within a measured error"},
@@ -42,7 +44,7 @@ VerbSpec simplify_spec() {
           "Makes one coarser mesh, down to a count, a share or a measured error.",
           one_model(),
           {single_target_group(), length_group(), method_group(), level_attributes_group(), volume_group(),
-           measuring_group(kBuildSamples), output_group(true), general_group()},
+           scan_group(true), measuring_group(kBuildSamples), output_group(true), general_group()},
           {{"lod simplify statue.ply -o small.ply --triangles 5000", "at most 5,000 triangles"},
            {"lod simplify statue.ply -o small.glb --error 0.1%", "as coarse as 0.1 % of the diagonal allows"},
            {"lod simplify statue.ply -o small.obj --ratio 10% --json", "keep a tenth, figures as JSON"}},
@@ -72,17 +74,18 @@ VerbSpec measure_spec() {
 }
 
 VerbSpec render_spec() {
-  return {"render",
-          "Draws a picture of a model without a display: shaded, textured, as wires, numbers as colours.",
-          {"INPUT...", 1, kAnyNumber, {}, Completion::file},
-          {camera_group(), look_group(), sheet_group(), volume_group(), picture_group(), general_group()},
-          {{"lod render statue.ply -o statue.png", "from the front and a little above, in grey"},
-           {"lod render statue.glb --level 1 --wireframe --view iso -o level1.png", "a ladder's level with its edges"},
-           {"lod render statue.glb --sheet -o sheet.webp", "all levels of a ladder in one picture, with their errors"}},
-          "Views are named by where the eye is, for someone who stands before the model: front is +z with y up, right "
-          "is +x. Faces seen from behind are drawn in a dull blue unless their material is double-sided. A numbers' "
-          "attribute (--shading heat --attribute NAME) is drawn with a legend.",
-          run_render};
+  return {
+      "render",
+      "Draws a picture of a model without a display: shaded, textured, as wires, numbers as colours.",
+      {"INPUT...", 1, kAnyNumber, {}, Completion::file},
+      {camera_group(), look_group(), sheet_group(), volume_group(), scan_group(true), picture_group(), general_group()},
+      {{"lod render statue.ply -o statue.png", "from the front and a little above, in grey"},
+       {"lod render statue.glb --level 1 --wireframe --view iso -o level1.png", "a ladder's level with its edges"},
+       {"lod render statue.glb --sheet -o sheet.webp", "all levels of a ladder in one picture, with their errors"}},
+      "Views are named by where the eye is, for someone who stands before the model: front is +z with y up, right "
+      "is +x. Faces seen from behind are drawn in a dull blue unless their material is double-sided. A numbers' "
+      "attribute (--shading heat --attribute NAME) is drawn with a legend.",
+      run_render};
 }
 
 VerbSpec remesh_spec() {
@@ -90,10 +93,12 @@ VerbSpec remesh_spec() {
       "remesh",
       "Makes a new closed surface of even triangles from a model, by way of voxels.",
       one_model(),
-      {remesh_group(), volume_group(), measuring_group(kBuildSamples), output_group(true), general_group()},
+      {remesh_target_group(), solid_group(), level_group(), length_group(), volume_group(), scan_group(false),
+       measuring_group(kBuildSamples), output_group(true), general_group()},
       {{"lod remesh statue.ply -o even.ply", "128 voxels along the longest side"},
        {"lod remesh statue.glb -o fine.glb --resolution 200", "a finer one"},
-       {"lod remesh statue.ply -o blocks.ply --resolution 40 --no-project", "as the voxels have it"}},
+       {"lod remesh statue.ply -o few.ply --triangles 2000 --then-collapse",
+        "closed whatever the input, and 2,000 well placed triangles"}},
       "The model is cut into voxels once, K times finer than asked; their shares in the larger ones are contoured at "
       "a half (Marching Cubes), and the vertices moved onto the input. Attributes are not carried over.",
       run_remesh};
@@ -103,7 +108,8 @@ VerbSpec voxelize_spec() {
   return {"voxelize",
           "Fills a model with voxels and writes them as cubes.",
           one_model(),
-          {voxel_group(), volume_group(), output_group(true), general_group()},
+          {resolution_group(), solid_group(), length_group(), volume_group(), scan_group(false), output_group(true),
+           general_group()},
           {{"lod voxelize statue.ply -o cubes.ply --resolution 32", "32 voxels along the longest side"},
            {"lod voxelize statue.glb -o cubes.glb --resolution 64 --fill nonzero", "overlapping parts are one solid"},
            {"lod voxelize statue.ply -o cubes.obj --resolution 16 --json", "figures as JSON"}},
@@ -111,11 +117,26 @@ VerbSpec voxelize_spec() {
           run_voxelize};
 }
 
+VerbSpec boolean_spec() {
+  return {"boolean",
+          "Unites, intersects and subtracts models as solids of voxels.",
+          {"A OPERATION B [OPERATION C]... [OUTPUT]", 3, kAnyNumber, {}, Completion::file},
+          {resolution_group(), solid_group(), level_group(), length_group(), measuring_group(kBuildSamples),
+           output_group(true), general_group()},
+          {{"lod boolean statue.ply difference sphere.glb out.ply", "the statue without the sphere"},
+           {"lod boolean statue.ply union sphere.glb -o both.glb --resolution 200", "finer, as one GLB"},
+           {"lod boolean statue.ply union sphere.glb intersection tower.glb -o out.ply --json",
+            "from left to right; figures as JSON"}},
+          "OPERATION is union, intersection or difference. Any number of models, combined from left to right; the last "
+          "name is the output unless -o gives it. The result is closed and manifold whatever the input.",
+          run_boolean};
+}
+
 VerbSpec info_spec() {
   return {"info",
           "Counts what a model has: triangles, pieces, borders, defects, attributes, materials, levels.",
           one_model(),
-          {unit_group(), volume_group(), result_group(), general_group()},
+          {unit_group(), volume_group(), scan_group(true), result_group(), general_group()},
           {{"lod info statue.ply", "is it closed, how many pieces"},
            {"lod info tower.glb", "what a scene draws; instances count each time"},
            {"lod info statue.glb --json", "all figures as JSON"}},
@@ -127,7 +148,7 @@ VerbSpec convert_spec() {
   return {"convert",
           "Writes a model in another format.",
           {"INPUT [OUTPUT]", 1, 2, {}, Completion::file},
-          {volume_group(), output_group(true), general_group()},
+          {volume_group(), scan_group(true), output_group(true), general_group()},
           {{"lod convert statue.ply statue.stl", "by the names' endings"},
            {"lod convert tower.glb -o tower.ply", "instances are flattened where the format has none"},
            {"lod convert statue.ply -o packed.glb --compress meshopt", "a smaller GLB"}},
@@ -186,9 +207,9 @@ VerbSpec completion_spec() {
 }
 
 std::vector<VerbSpec> make_verbs() {
-  std::vector<VerbSpec> all{build_spec(),  simplify_spec(), measure_spec(),   render_spec(),
-                            remesh_spec(), voxelize_spec(), info_spec(),      convert_spec(),
-                            sample_spec(), help_spec(),     completion_spec()};
+  std::vector<VerbSpec> all{build_spec(),   simplify_spec(), measure_spec(), render_spec(),
+                            remesh_spec(),  voxelize_spec(), boolean_spec(), info_spec(),
+                            convert_spec(), sample_spec(),   help_spec(),    completion_spec()};
   std::vector<std::string> names;
   for (const VerbSpec& verb : all) names.push_back(verb.name);
   for (VerbSpec& verb : all) {

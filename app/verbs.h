@@ -15,6 +15,7 @@ Result<ExitCode> run_info(const Arguments& arguments, Console& console);
 Result<ExitCode> run_render(const Arguments& arguments, Console& console);
 Result<ExitCode> run_convert(const Arguments& arguments, Console& console);
 Result<ExitCode> run_remesh(const Arguments& arguments, Console& console);
+Result<ExitCode> run_boolean(const Arguments& arguments, Console& console);
 Result<ExitCode> run_voxelize(const Arguments& arguments, Console& console);
 Result<ExitCode> run_sample(const Arguments& arguments, Console& console);
 Result<ExitCode> run_help(const Arguments& arguments, Console& console);

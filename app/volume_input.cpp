@@ -10,6 +10,7 @@
 #include "app/volume_report.h"
 #include "lodestone/base/file.h"
 #include "lodestone/base/mapped_file.h"
+#include "lodestone/io/points.h"
 
 namespace lodestone::app {
 namespace fs = std::filesystem;
@@ -61,6 +62,37 @@ OptionGroup volume_group() {
             Completion::choices},
            {"--raw-spacing", "", "X,Y,Z", "1,1,1", "millimetres", "size of a voxel", {}, Completion::none},
            {"--raw-skip", "", "N", "0", "bytes", "before the first value", {}, Completion::none}}};
+}
+
+OptionGroup scan_group(bool close) {
+  OptionGroup group{"Scans (points in PLY, PCD, LAS, XYZ)",
+                    {{"--scan-resolution",
+                      "",
+                      "N",
+                      "",
+                      "voxels",
+                      "along the longest side, for the surface of the points (without: by their spacing)",
+                      {},
+                      Completion::none},
+                     {"--splat",
+                      "",
+                      "",
+                      "",
+                      "",
+                      "take the voxels that hold points, closed from outside, in place of distances along normals",
+                      {},
+                      Completion::none}}};
+  if (close) {
+    group.options.push_back({"--close",
+                             "",
+                             "R",
+                             "",
+                             "length: 1% of the diagonal, or 2mm",
+                             "holes up to twice this radius are closed (without: by the scan)",
+                             {},
+                             Completion::none});
+  }
+  return group;
 }
 
 namespace {
@@ -226,11 +258,57 @@ Result<VolumeRequest> volume_request(const Arguments& arguments) {
     request.read.raw = std::move(*raw);
   }
   if (const Result<void> ok = read_smoothing(arguments, request.surface); !ok) return fail(ok.error());
+  if (arguments.has("--scan-resolution")) {
+    const Result<std::uint64_t> resolution = arguments.count("--scan-resolution", 8, 4096);
+    if (!resolution) return fail(resolution.error());
+    request.scan.resolution = static_cast<std::uint32_t>(*resolution);
+  }
+  request.scan.splat = arguments.has("--splat");
+  if (arguments.has("--close")) {
+    const Result<LengthRules> lengths = length_rules(arguments);
+    if (!lengths) return fail(lengths.error());
+    Result<std::vector<LengthArgument>> close = length_list(arguments, "--close", *lengths);
+    if (!close) return fail(close.error());
+    if (close->size() != 1) return bad_value("--close", arguments.text("--close"), "use one radius, such as 1%");
+    request.close = std::move(*close);
+  }
   return request;
 }
 
 bool is_volume(const fs::path& path, const VolumeRequest& request) {
   return request.asked || io::is_volume_name(path) || io::is_volume_folder(path);
+}
+
+bool is_scan(const fs::path& path) {
+  Result<InputFile> file = InputFile::open(path);
+  if (!file) return false;
+  std::string head(std::min<std::uint64_t>(file->size(), std::uint64_t{1} << 16), '\0');
+  const Result<std::size_t> got = file->read(std::as_writable_bytes(std::span(head)));
+  if (!got) return false;
+  head.resize(*got);
+  return io::looks_like_points(path, head);
+}
+
+Result<Model> read_scan_model(const fs::path& path, const VolumeRequest& request, Task task) {
+  Result<PointCloud> cloud = io::read_points(path, task.part(0.2, "reading"));
+  if (!cloud) return fail(cloud.error());
+  chain::ScanSurfaceOptions options = request.scan;
+  if (!request.close.empty()) {
+    Model unit;
+    unit.meters_per_unit = cloud->meters_per_unit;
+    const Result<std::vector<double>> radius = to_model_units(request.close, unit, bounds_of(*cloud).diagonal());
+    if (!radius) return fail(radius.error());
+    options.close_radius = radius->front();
+  }
+  Result<chain::ScanSurface> surface = chain::surface_of_scan(std::move(*cloud), options, task.part(0.8));
+  if (!surface) {
+    Error error = surface.error();
+    if (error.where.empty()) error.where = path.string();
+    return fail(std::move(error));
+  }
+  surface->model.files = {path};
+  surface->model.file_triangles = drawn_triangles(surface->model);
+  return std::move(surface->model);
 }
 
 Result<Model> read_volume_model(const fs::path& path, const VolumeRequest& request, Task task) {

@@ -16,10 +16,6 @@ Result<VoxelRequest> voxel_request(const Arguments& arguments, const char* verb)
   request.input = arguments.inputs.front();
   if (!arguments.has("--output")) return missing_output(verb, request.input);
   request.output = arguments.text("--output");
-  const Result<std::uint32_t> resolution = resolution_of(arguments);
-  if (!resolution) return fail(resolution.error());
-  request.resolution = *resolution;
-  request.fill = fill_of(arguments);
   Result<VolumeRequest> volume = volume_request(arguments);
   if (!volume) return fail(volume.error());
   request.volume = std::move(*volume);
@@ -64,6 +60,10 @@ std::string table_of(const VoxelReport& report) {
   table.add_row({"filled by", fmt::format("{} ({})", report.fill, report.fill_reason)});
   table.add_row({"triangles", fmt::format("{}, {} in the input", with_separators(report.triangles),
                                           with_separators(report.triangles_in))});
+  if (report.level_resolution > 0) {
+    table.add_row(
+        {"method", fmt::format("{}, {} voxels along the longest side", report.method, report.level_resolution)});
+  }
   if (report.error) {
     const LevelError& e = *report.error;
     const std::string unit = report.unit.empty() ? "" : " " + report.unit;
@@ -74,11 +74,12 @@ std::string table_of(const VoxelReport& report) {
   }
   table.add_row({"file", fmt::format("{} ({})", printable(report.output), human_bytes(report.bytes))});
   table.add_row(
-      {"seconds", fmt::format("read {}, prepare {}, voxelize {}, resample {}, surface {}, measure {}, write {}",
-                              seconds_text(report.read_seconds), seconds_text(report.prepare_seconds),
-                              seconds_text(report.voxelize_seconds), seconds_text(report.resample_seconds),
-                              seconds_text(report.isosurface_seconds), seconds_text(report.measure_seconds),
-                              seconds_text(report.write_seconds))});
+      {"seconds",
+       fmt::format("read {}, prepare {}, voxelize {}, resample {}, surface {}, collapse {}, measure {}, write {}",
+                   seconds_text(report.read_seconds), seconds_text(report.prepare_seconds),
+                   seconds_text(report.voxelize_seconds), seconds_text(report.resample_seconds),
+                   seconds_text(report.isosurface_seconds), seconds_text(report.collapse_seconds),
+                   seconds_text(report.measure_seconds), seconds_text(report.write_seconds))});
   return table.text();
 }
 
@@ -87,6 +88,11 @@ void tell(VoxelReport& report, const std::vector<std::string>& warnings, const C
     console.note(fmt::format("{}: {}", report.input, warning));
     report.warnings.push_back(warning);
   }
+}
+
+Error with_place(Error error, const std::string& place) {
+  if (error.where.empty()) error.where = place;
+  return error;
 }
 
 }  // namespace lodestone::app

@@ -1,8 +1,6 @@
 // What remesh and voxelize share: the request, reading, writing, the table.
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,14 +11,11 @@
 #include "lodestone/base/result.h"
 #include "lodestone/core/model.h"
 #include "lodestone/io/write.h"
-#include "lodestone/voxel/voxelize.h"
 
 namespace lodestone::app {
 
 struct VoxelRequest {
   std::string input, output;
-  std::uint32_t resolution = 0;
-  std::optional<voxel::FillRule> fill;
   VolumeRequest volume;  ///< where the input is one
   io::Compression compression = io::Compression::none;
 };
@@ -38,5 +33,8 @@ Result<void> write_surface(const Model& model, const VoxelRequest& request, Voxe
 void tell(VoxelReport& report, const std::vector<std::string>& warnings, const Console& console);
 
 std::string table_of(const VoxelReport& report);
+
+/// The error with the place where it has none.
+Error with_place(Error error, const std::string& place);
 
 }  // namespace lodestone::app

@@ -10,6 +10,7 @@
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 #include "lodestone/chain/collapse_plan_detail.h"
+#include "lodestone/chain/ladder_detail.h"
 #include "lodestone/chain/level_error_detail.h"
 
 namespace lodestone::chain {
@@ -155,15 +156,6 @@ std::string count_shortfall(const CollapsePlan& plan, std::size_t wanted, std::s
                      with_separators(got), plan.why_it_ends());
 }
 
-Level original_level(const Model& original, double diagonal) {
-  Level level;
-  level.triangles = drawn_triangles(original);
-  level.method = "original";
-  level.error.diagonal = diagonal;
-  level.error.kind = ErrorKind::bounded;  // it is the original itself
-  return level;
-}
-
 // Adds a cut with its error raised to the finer levels' and accounts its time.
 void add_level(LadderResult& result, Cut cut) {
   LevelError& e = cut.level.error;
@@ -183,7 +175,8 @@ Result<void> add_count_levels(LadderResult& result, const CollapsePlan& plan, co
     // A level that hardly differs from the one before is no level: the ladder ends.
     const bool shrinks = left * 100 <= result.ladder.levels.back().triangles * 97;
     if (short_of) result.shortfalls.push_back({i + 1, count_shortfall(plan, targets[i], left)});
-    if (prefix > last && (!short_of || shrinks)) {
+    const bool differs = prefix > last || (options.start && i == 0);  // what it starts from is a level already
+    if (differs && (!short_of || shrinks)) {
       Result<Cut> cut = make_cut(plan, prefix, reference, options.distance, part);
       if (!cut) return fail(cut.error());
       add_level(result, std::move(*cut));
@@ -203,7 +196,8 @@ Result<void> add_error_levels(LadderResult& result, const CollapsePlan& plan, co
     const Task part = task.part(1.0 / static_cast<double>(options.errors.size()), fmt::format("level {}", i + 1));
     Result<Cut> cut = find_error_cut(plan, last, options.errors[i], reference, options.distance, part);
     if (!cut) return fail(cut.error());
-    if (cut->prefix == last) {
+    const bool holds = cut->level.error.measured_error <= options.errors[i];
+    if (cut->prefix == last && !(options.start && i == 0 && holds)) {
       result.shortfalls.push_back(
           {i + 1,
            fmt::format("nothing coarser than the level before has a measured error within {:.6g}", options.errors[i])});
@@ -221,7 +215,23 @@ Result<void> add_error_levels(LadderResult& result, const CollapsePlan& plan, co
   return {};
 }
 
-Result<void> compare_pictures(LadderResult& result, const measure::ImageOptions& options, const Task& task) {
+Result<void> check_drawn(const Model& original) {
+  if (drawn_triangles(original) > 0) return {};
+  return fail(ErrorCode::empty, "the model draws no triangle", {}, "is a scene with meshes in the file?");
+}
+
+}  // namespace
+
+Level detail::original_level(const Model& original, double diagonal) {
+  Level level;
+  level.triangles = drawn_triangles(original);
+  level.method = "original";
+  level.error.diagonal = diagonal;
+  level.error.kind = ErrorKind::bounded;  // it is the original itself
+  return level;
+}
+
+Result<void> detail::compare_pictures(LadderResult& result, const measure::ImageOptions& options, const Task& task) {
   const Stopwatch watch;
   const auto reference = measure::ImageReference::create(result.ladder.original, options, task.part(0.2));
   if (!reference) return fail(reference.error());
@@ -236,13 +246,6 @@ Result<void> compare_pictures(LadderResult& result, const measure::ImageOptions&
   return {};
 }
 
-Result<void> check_drawn(const Model& original) {
-  if (drawn_triangles(original) > 0) return {};
-  return fail(ErrorCode::empty, "the model draws no triangle", {}, "is a scene with meshes in the file?");
-}
-
-}  // namespace
-
 Result<LadderResult> build_ladder(Model original, const LadderOptions& options, Task task) {
   if (const Result<void> ok = check(options); !ok) return fail(ok.error());
   if (const Result<void> ok = check_drawn(original); !ok) return fail(ok.error());
@@ -253,22 +256,23 @@ Result<LadderResult> build_ladder(Model original, const LadderOptions& options, 
   result.ladder.original = std::move(original);
   const Model& model = result.ladder.original;
   const Stopwatch collapsing;
-  const Result<CollapsePlan> plan =
-      CollapsePlan::create(model, smallest, options.influence, task.part(0.4, "collapsing"));
+  const Result<CollapsePlan> plan = CollapsePlan::create(options.start ? *options.start : model, smallest,
+                                                         options.influence, task.part(0.4, "collapsing"));
   if (!plan) return fail(plan.error());
   result.simplify_seconds = collapsing.total();
   const Stopwatch preparing;
   const Result<Reference> reference = Reference::create(model, task.part(0.05, "preparing to measure"));
   if (!reference) return fail(reference.error());
   result.measure_seconds = preparing.total();
-  result.ladder.levels.push_back(original_level(model, reference->diagonal()));
+  result.ladder.levels.push_back(detail::original_level(model, reference->diagonal()));
   const Task measuring = task.part(options.image ? 0.4 : 0.55, "measuring");
   const Result<void> added = options.errors.empty()
                                  ? add_count_levels(result, *plan, targets, *reference, options, measuring)
                                  : add_error_levels(result, *plan, *reference, options, measuring);
   if (!added) return fail(added.error());
   if (options.image) {
-    const Result<void> compared = compare_pictures(result, *options.image, task.part(0.15, "comparing pictures"));
+    const Result<void> compared =
+        detail::compare_pictures(result, *options.image, task.part(0.15, "comparing pictures"));
     if (!compared) return fail(compared.error());
   }
   return result;

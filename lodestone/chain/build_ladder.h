@@ -28,6 +28,9 @@ struct LadderOptions {
                                        ///< the coarsest mesh found within it, by bisection over one run's log
   Influence influence;                 ///< where the model matters more, what stays
   measure::DistanceOptions distance;   ///< samples and seed of the measurement
+  /// What the coarser levels are collapsed from in place of the original, which they are measured against all the same:
+  /// a surface made from it. It has one instance of one mesh, as the original must have.
+  std::optional<Model> start;
   /// Compare pictures of each level as well. The original's textures must be decoded (io::decode_base_colors()).
   std::optional<measure::ImageOptions> image;
 };

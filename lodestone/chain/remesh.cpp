@@ -3,63 +3,122 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "lodestone/base/stopwatch.h"
+#include "lodestone/base/units.h"
+#include "lodestone/chain/ladder_detail.h"
 #include "lodestone/chain/level_error_detail.h"
-#include "lodestone/spatial/bvh.h"
-#include "lodestone/voxel/isosurface.h"
-#include "lodestone/voxel/project.h"
-#include "lodestone/voxel/resample.h"
+#include "lodestone/chain/voxel_search_detail.h"
 
 namespace lodestone::chain {
 
+using detail::VoxelCut;
+
 namespace {
+
+constexpr std::uint32_t kUsual = 128;
+constexpr std::uint32_t kMostForError = 1024;  // finer surfaces than that are asked for by name
 
 Result<void> check(const RemeshOptions& options) {
   const auto bad = [](std::string what, std::string remedy) {
     return fail(ErrorCode::bad_argument, std::move(what), {}, std::move(remedy));
   };
-  if (options.resolutions.empty()) return bad("no resolution is asked for", "ask for 4 voxels or more");
-  if (options.supersample > 64) return bad("more than 64 voxels in one are asked for", "use 1 to 64");
-  for (std::size_t i = 0; i < options.resolutions.size(); ++i) {
-    const std::uint32_t n = options.resolutions[i];
-    if (n < 4 || n > 16'384) return bad(fmt::format("a resolution of {} can't be", n), "use 4 to 16,384");
-    if (i > 0 && n >= options.resolutions[i - 1])
-      return bad("the resolutions do not fall", "name the finest level first");
+  const bool count = options.triangles > 0, error = options.error > 0;
+  if (count && error) return bad("a triangle count and an error are asked for at once", "choose one");
+  if (options.then_collapse && !count && !error) {
+    return bad("--then-collapse needs a target", "add --triangles or --error");
+  }
+  if (options.resolution > 0 && (count || error) && !options.then_collapse) {
+    return bad("--resolution and a target are asked for at once", "choose one, or add --then-collapse");
   }
   return {};
 }
 
-// Size of a level's grid inside the solid's: a whole number of its voxels each where the finest has `supersample`.
-std::array<std::uint32_t, 3> level_size(const VoxelGrid& solid, std::uint32_t longest, std::uint32_t resolution) {
-  std::array<std::uint32_t, 3> size{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::uint64_t wanted = (std::uint64_t{solid.size[k]} * resolution + longest / 2) / longest;
-    size[k] = std::clamp<std::uint32_t>(static_cast<std::uint32_t>(wanted), 1, solid.size[k]);
+// How fine the surface must be that is collapsed: so that the target's error is not that of the voxels.
+constexpr std::size_t kStartTriangles = 8;
+constexpr double kStartError = 3;
+
+// The finest resolution that levels will be asked for.
+Result<std::uint32_t> finest_for(const Model& model, const RemeshOptions& options, const Task& task) {
+  if (options.resolution > 0) return options.resolution;
+  if (options.triangles > 0) {
+    const std::size_t wanted = options.triangles * (options.then_collapse ? kStartTriangles : 1);
+    const Result<std::uint32_t> predicted = detail::predict_resolution(model, options.voxel, wanted, task);
+    if (!predicted) return predicted;
+    return std::max<std::uint32_t>(8, *predicted + (options.then_collapse ? 0 : *predicted / 8));
   }
-  return size;
+  return options.error > 0 ? kMostForError / 2 : kUsual;
 }
 
-Result<Mesh> contour(const BitVolume& solid, std::uint32_t resolution, const spatial::Bvh& source,
-                     const RemeshOptions& options, RemeshSeconds& seconds, const Task& task) {
-  Stopwatch watch;
-  const auto& size = solid.grid.size;
-  const std::uint32_t longest = *std::max_element(size.begin(), size.end());
-  const auto shares = voxel::downsample(solid, level_size(solid.grid, longest, resolution), task);
-  if (!shares) return fail(shares.error());
-  seconds.resample += watch.lap();
-  Result<Mesh> mesh = voxel::isosurface(*shares, {127.5}, task);
-  if (!mesh && mesh.error().code == ErrorCode::empty) {
-    return fail(ErrorCode::empty,
-                fmt::format("no part is half as thick as a voxel of {} along the longest side", resolution), {},
+Result<VoxelCut> make_cut(VoxelLevels& levels, std::uint32_t resolution, const Task& task) {
+  Result<Mesh> mesh = levels.surface_at(resolution, task);
+  if (!mesh) return fail(mesh.error());
+  return VoxelCut{resolution, std::move(*mesh), {}};
+}
+
+Result<VoxelCut> cut_for(VoxelLevels& levels, const RemeshOptions& options, std::uint32_t finest,
+                         const measure::Reference* reference, const Task& task) {
+  if (options.then_collapse && options.error > 0 && options.resolution == 0) {
+    return detail::find_error(levels, options.error / kStartError, kUsual, *reference, options.distance, task);
+  }
+  if (options.then_collapse || options.resolution > 0) return make_cut(levels, finest, task);
+  if (options.triangles > 0) return detail::find_count(levels, options.triangles, finest * 8 / 9, task);
+  if (options.error > 0) return detail::find_error(levels, options.error, 64, *reference, options.distance, task);
+  return make_cut(levels, finest, task);
+}
+
+Model model_of(Mesh mesh, const Model& source) {
+  Model out = make_model(std::move(mesh));
+  out.meters_per_unit = source.meters_per_unit;
+  out.gltf_axes = source.gltf_axes;
+  return out;
+}
+
+Result<void> collapse(const Model& model, const RemeshOptions& options, Mesh mesh, RemeshResult& out,
+                      const Task& task) {
+  LadderOptions ladder;
+  ladder.start = model_of(std::move(mesh), model);
+  ladder.distance = options.distance;
+  const std::size_t start = ladder.start->meshes.front().triangles.size();
+  if (options.triangles > 0) ladder.triangles = {std::min(options.triangles, start)};
+  if (options.error > 0) ladder.errors = {options.error};
+  Model original = model;
+  Result<LadderResult> made = build_ladder(std::move(original), ladder, task);
+  if (!made) return fail(made.error());
+  if (!made->shortfalls.empty()) out.shortfall = made->shortfalls.front().reason;
+  if (made->ladder.levels.size() < 2) {
+    return fail(ErrorCode::bad_argument, "the surface by voxels is not within the error that is asked for", {},
                 "raise --resolution");
   }
-  if (!mesh) return fail(mesh.error());
-  const Vec3d voxel = shares->grid.spacing;
-  if (options.project) voxel::project(*mesh, source, std::max({voxel.x, voxel.y, voxel.z}), task);
-  if (task.cancelled()) return cancelled_error("remeshing");
-  seconds.isosurface += watch.lap();
-  return mesh;
+  out.level = std::move(made->ladder.levels[1]);
+  out.level.method = "voxels and edge collapse";
+  out.seconds.collapse += made->simplify_seconds;
+  out.seconds.measure += made->measure_seconds;
+  return {};
+}
+
+void tell_vanished(const VoxelLevels& levels, const Model& model, const Mesh& mesh, std::uint32_t resolution,
+                   std::vector<std::string>& warnings) {
+  const std::vector<std::string> gone = levels.vanished(model, mesh, resolution);
+  if (gone.empty()) return;
+  constexpr std::size_t kNamed = 4;
+  const auto end = gone.begin() + static_cast<std::ptrdiff_t>(std::min(kNamed, gone.size()));
+  warnings.push_back(fmt::format("{} of the model's pieces vanished, as they are thinner than a voxel: {}{}",
+                                 with_separators(gone.size()), fmt::join(gone.begin(), end, "; "),
+                                 gone.size() > kNamed ? "; ..." : ""));
+}
+
+std::string shortfall_of(const RemeshOptions& options, const VoxelCut& cut) {
+  const std::size_t count = cut.mesh.triangles.size();
+  if (options.triangles > 0 && (count > options.triangles || count * 10 < options.triangles * 9)) {
+    return fmt::format("{} triangles were asked for, {} are the nearest that a resolution gives",
+                       with_separators(options.triangles), with_separators(count));
+  }
+  if (options.error > 0 && cut.distance && cut.distance->trusted_max() > options.error) {
+    return fmt::format("no resolution up to {} has a measured error within {:.6g}", cut.resolution, options.error);
+  }
+  return {};
 }
 
 }  // namespace
@@ -68,49 +127,162 @@ Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Ta
   if (const Result<void> ok = check(options); !ok) return fail(ok.error());
   RemeshResult out;
   Stopwatch watch;
-  const Result<FillChoice> choice = choose_fill(model, options.fill, task.part(0.1));
-  if (!choice) return fail(choice.error());
-  const std::uint32_t usual = choice->fill == voxel::FillRule::winding ? 2 : 4;
-  const std::uint32_t supersample = options.supersample > 0 ? options.supersample : usual;
-  SolidOptions solid_options;
-  solid_options.resolution = options.resolutions.front() * supersample;
-  solid_options.margin = solid_options.multiple = supersample;  // whole voxels of the finest level
-  const Result<Solid> solid = solid_of(model, *choice, solid_options, task.part(0.3));
-  if (!solid) return fail(solid.error());
-  out.seconds.voxelize = solid->seconds.slicing + solid->seconds.filling;
-  out.resolution = solid->volume.grid.size;
-  out.voxels_inside = solid->volume.set_count();
-  out.fill = *choice;
-  out.warnings = solid->warnings;
-
-  const spatial::Bvh source(solid->surface, task);
-  out.seconds.prepare = watch.total() - out.seconds.voxelize;
+  const Result<std::uint32_t> finest = finest_for(model, options, task.part(0.1));
+  if (!finest) return fail(finest.error());
+  Result<VoxelLevels> levels = VoxelLevels::create(model, options.voxel, *finest, task.part(0.3));
+  if (!levels) return fail(levels.error());
   std::optional<measure::Reference> reference;
-  if (options.measure) {
+  if (options.measure || options.error > 0) {
+    const Stopwatch preparing;
     Result<measure::Reference> made = measure::Reference::create(model, task.part(0.1));
     if (!made) return fail(made.error());
     reference.emplace(std::move(*made));
+    out.seconds.measure += preparing.total();
   }
-  for (const std::uint32_t resolution : options.resolutions) {
+  Result<VoxelCut> cut = cut_for(*levels, options, *finest, reference ? &*reference : nullptr, task.part(0.2));
+  if (!cut) return fail(cut.error());
+  const VoxelSeconds& made = levels->seconds();
+  out.seconds.prepare = made.prepare;
+  out.seconds.voxelize = made.voxelize;
+  out.seconds.resample = made.resample;
+  out.seconds.isosurface = made.isosurface;
+  out.resolution = levels->solid().volume.grid.size;
+  out.level_resolution = cut->resolution;
+  out.voxels_inside = levels->voxels_inside();
+  out.fill = levels->fill();
+  out.warnings = levels->solid().warnings;
+  tell_vanished(*levels, model, cut->mesh, cut->resolution, out.warnings);
+  if (options.then_collapse) {
+    const Result<void> done = collapse(model, options, std::move(cut->mesh), out, task.part(0.3, "collapsing"));
+    if (!done) return fail(done.error());
+    out.level.seconds = watch.total();
+    return out;
+  }
+  out.shortfall = shortfall_of(options, *cut);
+  Level& level = out.level;
+  level.triangles = cut->mesh.triangles.size();
+  level.method = "voxels";
+  level.model = model_of(std::move(cut->mesh), model);
+  if (reference && !cut->distance) {
+    const Stopwatch measuring;
+    const Result<measure::Distance> d =
+        reference->distance_to(level.model, options.distance, task.part(0.3, "measuring"));
+    if (!d) return fail(d.error());
+    cut->distance = *d;
+    out.seconds.measure += measuring.total();
+  }
+  if (cut->distance) level.error = detail::level_error(*cut->distance);
+  level.seconds = watch.total();
+  return out;
+}
+
+namespace {
+
+// What each coarser level is to be: a count, or an error.
+struct LevelTarget {
+  std::size_t triangles = 0;
+  double error = 0;
+};
+
+std::vector<LevelTarget> targets_of(const LadderOptions& options, std::size_t triangles) {
+  std::vector<LevelTarget> out;
+  const auto share = [&](double ratio) {
+    return std::max<std::size_t>(8, static_cast<std::size_t>(static_cast<double>(triangles) * ratio + 0.5));
+  };
+  for (const double e : options.errors) out.push_back({0, e});
+  for (const std::size_t n : options.triangles) out.push_back({n, 0});
+  for (const double r : options.ratios) out.push_back({share(r), 0});
+  if (!out.empty()) return out;
+  double ratio = 1;
+  for (std::size_t i = 1; i < options.levels; ++i) out.push_back({share(ratio *= 0.5), 0});
+  return out;
+}
+
+Result<void> add_voxel_levels(LadderResult& out, VoxelLevels& levels, const std::vector<LevelTarget>& targets,
+                              std::uint32_t guess, const measure::Reference& reference, const LadderOptions& options,
+                              std::vector<std::string>& warnings, const Task& task) {
+  const Model& original = out.ladder.original;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
     const Stopwatch making;
-    const Task part =
-        task.part(0.5 / static_cast<double>(options.resolutions.size()), fmt::format("{} voxels", resolution));
-    Result<Mesh> mesh = contour(solid->volume, resolution, source, options, out.seconds, part);
-    if (!mesh) return fail(mesh.error());
-    Level level;
-    level.triangles = mesh->triangles.size();
-    level.method = "voxels";
-    level.model = make_model(std::move(*mesh));
-    level.model.meters_per_unit = model.meters_per_unit;
-    if (reference) {
-      const Stopwatch measuring;
-      const Result<measure::Distance> d = reference->distance_to(level.model, options.distance, part);
-      if (!d) return fail(d.error());
-      level.error = detail::level_error(*d, out.levels.empty() ? 0 : out.levels.back().error.error);
-      out.seconds.measure += measuring.total();
+    const Task part = task.part(1.0 / static_cast<double>(targets.size()), fmt::format("level {}", i + 1));
+    const LevelTarget& target = targets[i];
+    Result<VoxelCut> cut = target.error > 0
+                               ? detail::find_error(levels, target.error, guess, reference, options.distance, part)
+                               : detail::find_count(levels, target.triangles, guess, part);
+    if (!cut && cut.error().code == ErrorCode::empty && i > 0) {
+      out.shortfalls.push_back({i + 1, cut.error().what});
+      break;
     }
+    if (!cut) return fail(cut.error());
+    RemeshOptions asked;
+    asked.triangles = target.triangles;
+    asked.error = target.error;
+    if (std::string reason = shortfall_of(asked, *cut); !reason.empty()) out.shortfalls.push_back({i + 1, reason});
+    guess = std::max<std::uint32_t>(4, target.error > 0 ? cut->resolution / 2 : cut->resolution * 7 / 10);
+    tell_vanished(levels, original, cut->mesh, cut->resolution, warnings);
+    Level level;
+    level.triangles = cut->mesh.triangles.size();
+    level.method = "voxels";
+    level.model = model_of(std::move(cut->mesh), original);
+    const Stopwatch measuring;
+    const Result<measure::Distance> d = cut->distance ? Result<measure::Distance>(*cut->distance)
+                                                      : reference.distance_to(level.model, options.distance, part);
+    if (!d) return fail(d.error());
+    out.measure_seconds += measuring.total();
+    level.error = detail::level_error(*d, out.ladder.levels.back().error.error);
     level.seconds = making.total();
-    out.levels.push_back(std::move(level));
+    out.simplify_seconds += level.seconds - measuring.total();
+    out.ladder.levels.push_back(std::move(level));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<LadderResult> build_voxel_ladder(Model original, const LadderOptions& options, const VoxelOptions& voxel,
+                                        bool then_collapse, std::uint32_t resolution,
+                                        std::vector<std::string>& warnings, Task task) {
+  const std::vector<LevelTarget> targets = targets_of(options, drawn_triangles(original));
+  RemeshOptions first;
+  first.voxel = voxel;
+  first.then_collapse = then_collapse;
+  first.resolution = resolution;
+  first.triangles = targets.front().triangles;
+  first.error = targets.front().error;
+  first.distance = options.distance;
+  const Result<std::uint32_t> finest = finest_for(original, first, task.part(0.1));
+  if (!finest) return fail(finest.error());
+  Result<VoxelLevels> levels = VoxelLevels::create(original, voxel, *finest, task.part(0.2));
+  if (!levels) return fail(levels.error());
+  warnings.insert(warnings.end(), levels->solid().warnings.begin(), levels->solid().warnings.end());
+  if (then_collapse) {
+    const Result<measure::Reference> reference = measure::Reference::create(original, task);
+    if (!reference) return fail(reference.error());
+    Result<VoxelCut> start = cut_for(*levels, first, *finest, &*reference, task.part(0.2));
+    if (!start) return fail(start.error());
+    tell_vanished(*levels, original, start->mesh, start->resolution, warnings);
+    LadderOptions collapsing = options;
+    collapsing.start = model_of(std::move(start->mesh), original);
+    Result<LadderResult> made = build_ladder(std::move(original), collapsing, task.part(0.5));
+    if (!made) return made;
+    for (std::size_t i = 1; i < made->ladder.levels.size(); ++i) {
+      made->ladder.levels[i].method = "voxels and edge collapse";
+    }
+    return made;
+  }
+  LadderResult out;
+  out.ladder.original = std::move(original);
+  const Stopwatch preparing;
+  const Result<measure::Reference> reference = measure::Reference::create(out.ladder.original, task.part(0.1));
+  if (!reference) return fail(reference.error());
+  out.measure_seconds = preparing.total();
+  out.ladder.levels.push_back(detail::original_level(out.ladder.original, reference->diagonal()));
+  const Result<void> added = add_voxel_levels(out, *levels, targets, std::max<std::uint32_t>(4, *finest * 8 / 9),
+                                              *reference, options, warnings, task.part(0.6));
+  if (!added) return fail(added.error());
+  if (options.image) {
+    const Result<void> compared = detail::compare_pictures(out, *options.image, task);
+    if (!compared) return fail(compared.error());
   }
   return out;
 }

@@ -1,50 +1,55 @@
-// Levels from one solid voxelization (paper 000): whatever the input, closed manifold surfaces.
+// New surfaces of models by way of voxels (paper 000): whatever the input, closed and manifold.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
-#include "lodestone/chain/solid.h"
+#include "lodestone/chain/build_ladder.h"
+#include "lodestone/chain/voxel_levels.h"
 #include "lodestone/core/level.h"
 #include "lodestone/measure/distance.h"
-#include "lodestone/voxel/voxelize.h"
 
 namespace lodestone::chain {
 
 struct RemeshOptions {
-  /// Voxels along the longest side of each level, the margin of one at both ends counted; falling, the finest first.
-  std::vector<std::uint32_t> resolutions{128};
-  /// Voxels of the solid in one of the finest level, along each side (the paper's downsampling ratio; it finds 5 to 15
-  /// best; after projection more than 4 buy little). 0: 4, or 2 where winding numbers fill, as they take their time.
-  std::uint32_t supersample = 0;
-  std::optional<voxel::FillRule> fill;  ///< without: by the input, see fill_for()
-  bool project = true;                  ///< move vertices onto the source, at most a voxel of the level far
+  std::uint32_t resolution =
+      0;                      ///< voxels along the longest side, the margin of one counted; 0 = by the target, or 128
+  std::size_t triangles = 0;  ///< at most so many, and not below nine tenths; 0 = no such target
+  double error = 0;           ///< the coarsest whose measured error is within it, model units; 0 = no such target
+  /// Reach the target by collapsing edges of a surface with a resolution that is given, or as fine as eight times the
+  /// target's count or a third of its error need.
+  bool then_collapse = false;
+  VoxelOptions voxel;
   bool measure = true;
   measure::DistanceOptions distance;
 };
 
-struct RemeshSeconds {
-  double prepare = 0;  ///< what the rule needs to know, the scene in world space, its tree
-  double voxelize = 0, resample = 0, isosurface = 0, measure = 0;
-};
-
 struct RemeshResult {
-  std::vector<Level> levels;                  ///< one a resolution; method "voxels"
+  Level level;                                ///< method "voxels" or "voxels and edge collapse"
+  std::uint32_t level_resolution = 0;         ///< of the surface, along the longest side
   std::array<std::uint32_t, 3> resolution{};  ///< of the solid
   std::uint64_t voxels_inside = 0;
   FillChoice fill;
-  std::vector<std::string> warnings;
-  RemeshSeconds seconds;
+  std::vector<std::string> warnings;  ///< what had to be assumed, what vanished
+  std::string shortfall;              ///< empty = the target was reached
+  VoxelSeconds seconds;
 };
 
-/// Voxelizes the model's default scene once and contours it at each resolution: shares of set voxels, Marching Cubes at
-/// a half, vertices moved onto the source. Errors: bad_argument (resolutions that don't fall, or that need more than
-/// 65,535 voxels a side), empty, cancelled.
+/// Voxelizes the model's default scene and contours it. A count is predicted from coarser runs, as triangles grow with
+/// the square of the resolution (paper 000, section 3.4); an error is found by measuring. Errors: bad_argument (both
+/// targets; then_collapse without one; a resolution beside a target without it; options out of range), empty,
+/// out_of_memory, cancelled.
 Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options = {}, Task task = {});
+
+/// build_ladder() with levels by voxels in place of edge collapse, each from the same solid, the finest first. The
+/// original must be one mesh placed once. With `then_collapse` the levels are collapsed from one surface by voxels; a
+/// `resolution` above 0 is that surface's. Errors as above and as build_ladder().
+Result<LadderResult> build_voxel_ladder(Model original, const LadderOptions& options, const VoxelOptions& voxel,
+                                        bool then_collapse, std::uint32_t resolution,
+                                        std::vector<std::string>& warnings, Task task = {});
 
 }  // namespace lodestone::chain

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "lodestone/base/memory.h"
 #include "lodestone/base/units.h"
 #include "lodestone/measure/shape.h"
 
@@ -41,18 +45,64 @@ Result<FillChoice> choose_fill(const Model& model, std::optional<voxel::FillRule
               "use --fill winding");
 }
 
+namespace {
+
+// Shrinkwrap's radius in voxels.
+double close_voxels(const FillChoice& choice, double voxel) {
+  constexpr double kUsual = 2;
+  return choice.close > 0 ? choice.close / voxel : kUsual;
+}
+
+}  // namespace
+
+Result<void> check_memory(const VoxelGrid& grid, double bytes_a_voxel) {
+  const double needed = static_cast<double>(grid.count()) * bytes_a_voxel;
+  const auto there = static_cast<double>(available_memory_bytes());
+  if (needed <= 0.9 * there) return {};
+  return fail(
+      ErrorCode::out_of_memory,
+      fmt::format("{} x {} x {} voxels need {}, {} are left", grid.size[0], grid.size[1], grid.size[2],
+                  human_bytes(static_cast<std::uint64_t>(needed)), human_bytes(static_cast<std::uint64_t>(there))),
+      {}, "lower --resolution or --supersample");
+}
+
+Result<VoxelGrid> solid_grid(const Box3d& bounds, const FillChoice& choice, const SolidOptions& options) {
+  std::uint32_t margin = options.margin;
+  if (choice.fill == voxel::FillRule::shrinkwrap) {
+    // The growth needs room as well: the radius is told in voxels of a grid without it, or a little more.
+    const Vec3d size = bounds.size();
+    const double voxel = std::max({size.x, size.y, size.z}) / options.resolution;
+    const double room = std::ceil(voxel > 0 ? close_voxels(choice, voxel) : 0) + 3;
+    if (!(2 * room < options.resolution)) {
+      return fail(ErrorCode::bad_argument, "the radius within which holes are to be closed is most of the model", {},
+                  "lower --close");
+    }
+    margin = std::max(margin, static_cast<std::uint32_t>(room));
+  }
+  Result<VoxelGrid> grid = voxel::grid_around(bounds, options.resolution, margin);
+  if (!grid) return grid;
+  widen(*grid, options.multiple);
+  return grid;
+}
+
 Result<Solid> solid_of(const Model& model, const FillChoice& choice, const SolidOptions& options, Task task) {
+  const Result<VoxelGrid> grid = solid_grid(bounds_of(model), choice, options);
+  if (!grid) return fail(grid.error());
+  return solid_in(model, choice, *grid, task);
+}
+
+Result<Solid> solid_in(const Model& model, const FillChoice& choice, const VoxelGrid& grid, Task task) {
+  const bool wraps = choice.fill == voxel::FillRule::shrinkwrap;
+  if (const Result<void> room = check_memory(grid, wraps ? 2.5 : 0.125); !room) return fail(room.error());
   Result<spatial::Surface> surface = spatial::flatten(model, task.part(0.3));
   if (!surface) return fail(surface.error());
-  Result<VoxelGrid> grid = voxel::grid_around(surface->bounds, options.resolution, options.margin);
-  if (!grid) return fail(grid.error());
-  widen(*grid, options.multiple);
-  Result<voxel::Voxelized> made = voxel::voxelize(*surface, *grid, {choice.fill}, task.part(0.7));
+  const voxel::VoxelizeOptions fill{choice.fill, close_voxels(choice, grid.spacing.x)};
+  Result<voxel::Voxelized> made = voxel::voxelize(*surface, grid, fill, task.part(0.7));
   if (!made) return fail(made.error());
   if (made->volume.set_count() == 0) {
     return fail(ErrorCode::empty, "no voxel lies inside the model", {},
                 choice.closed ? "its parts are thinner than a voxel: raise --resolution"
-                              : "it is open and encloses nothing: close it first");
+                              : "it is open and encloses nothing: close it first, or use --fill shrinkwrap");
   }
   Solid out;
   if (choice.fill == voxel::FillRule::winding && !choice.asked) {

@@ -1,4 +1,4 @@
-// A model as a solid of voxels, with the rule that suits it.
+// Models as solids: which rule fills them, and their voxels.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include "lodestone/base/task.h"
 #include "lodestone/core/model.h"
 #include "lodestone/core/topology.h"
+#include "lodestone/core/volume.h"
 #include "lodestone/spatial/surface.h"
 #include "lodestone/voxel/voxelize.h"
 
@@ -21,6 +22,7 @@ struct FillChoice {
   std::string reason;  ///< what was seen in the model, in plain words: "223 edges are open"
   bool closed = true;  ///< no edge is open
   bool asked = false;  ///< it was asked for by name
+  double close = 0;    ///< shrinkwrap: the radius within which holes are closed, model units; 0 = two voxels
 };
 
 /// The rule for a surface of this connectivity: closed surfaces get parity; closed pieces that all face one way, of
@@ -45,7 +47,17 @@ struct Solid {
 };
 
 /// Voxelizes the default scene: world space, all instances. Errors: empty (nothing drawn, no voxel inside),
-/// bad_argument (as voxel::grid_around), cancelled.
+/// bad_argument (as voxel::grid_around), out_of_memory (more than the machine has left: the line says how much),
+/// cancelled.
 Result<Solid> solid_of(const Model& model, const FillChoice& choice, const SolidOptions& options = {}, Task task = {});
+
+/// The same in a given grid. Errors as above.
+Result<Solid> solid_in(const Model& model, const FillChoice& choice, const VoxelGrid& grid, Task task = {});
+
+/// The grid of solid_of() around a box. Errors: bad_argument.
+Result<VoxelGrid> solid_grid(const Box3d& bounds, const FillChoice& choice, const SolidOptions& options);
+
+/// Whether so many bytes for a grid can be had. Errors: out_of_memory, which says how many are needed and there.
+Result<void> check_memory(const VoxelGrid& grid, double bytes_a_voxel);
 
 }  // namespace lodestone::chain

@@ -277,8 +277,8 @@ Result<VolumeSurface> surface_of(const ScannedVolume& volume, const VolumeSurfac
         fmt::format("{} voxels hold no number and count as outside", with_separators(range.no_numbers)));
   }
   if (options.labels) {
-    const Result<void> added = std::visit(
-        [&](const auto& values) { return add_labels(volume, values, options, model, task); }, volume.values);
+    const Result<void> added =
+        std::visit([&](const auto& values) { return add_labels(volume, values, options, model, task); }, volume.values);
     if (!added) return fail(added.error());
   } else {
     const Result<double> iso = choose_iso(options, volume.values, range, model.warnings);

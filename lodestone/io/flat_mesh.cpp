@@ -1,4 +1,5 @@
 #include "lodestone/io/flat_mesh_detail.h"
+#include "lodestone/io/flatten.h"
 
 #include <fmt/format.h>
 
@@ -110,6 +111,21 @@ Mesh flatten_to_mesh(const Model& model, std::vector<std::string>& warnings) {
   const bool shift = mesh.offset != Vec3d{} || far > 256 * std::max({size.x, size.y, size.z});
   if (shift) out.offset = {std::floor(center.x), std::floor(center.y), std::floor(center.z)};
   for (const Instance& instance : model.instances) append_instance(model, instance, out);
+  return out;
+}
+
+Model flattened(Model model, std::vector<std::string>& warnings) {
+  const bool one = model.meshes.size() == 1 && model.instances.size() == 1 && model.instances[0].mesh == 0 &&
+                   model.instances[0].transform.is_identity();
+  if (one && !model.document) return model;
+  Model out = make_model(flatten_to_mesh(model, warnings));
+  out.materials = std::move(model.materials);
+  out.meters_per_unit = model.meters_per_unit;
+  out.gltf_axes = model.gltf_axes;
+  out.uv_origin_top = model.uv_origin_top;
+  out.file_vertices = model.file_vertices;
+  out.file_triangles = model.file_triangles;
+  out.files = std::move(model.files);
   return out;
 }
 

@@ -59,13 +59,29 @@ void add_row(const std::uint64_t* row, std::uint32_t size, std::uint32_t ratio, 
   }
 }
 
+// As add_row() for larger voxels of any size: words that are empty are skipped, and full ones need no counting.
+void add_row_between(const std::uint64_t* row, std::size_t words, std::span<const std::uint32_t> xs,
+                     std::uint32_t* counts) {
+  const std::size_t size = xs.size() - 1;
+  std::size_t x = 0;
+  for (std::size_t w = 0; w < words; ++w) {
+    if (row[w] == 0) continue;
+    const auto begin = static_cast<std::uint32_t>(w * 64), end = begin + 64;
+    const bool full = ~row[w] == 0;
+    while (x < size && xs[x + 1] <= begin) ++x;
+    for (std::size_t k = x; k < size && xs[k] < end; ++k) {
+      const std::uint32_t from = std::max(xs[k], begin), to = std::min(xs[k + 1], end);
+      counts[k] += full ? to - from : set_between(row, from, to);
+    }
+  }
+}
+
 // Counts of one row of large voxels.
 void count_row(const BitVolume& volume, std::span<const std::uint32_t> xs, std::uint32_t ratio,
                const std::uint64_t* row, std::vector<std::uint32_t>& counts) {
   const auto size = static_cast<std::uint32_t>(counts.size());
   if (ratio == 2 || ratio == 4 || ratio == 8) return add_row(row, size, ratio, counts.data());
-  if (std::all_of(row, row + volume.row_words, [](std::uint64_t w) { return w == 0; })) return;
-  for (std::uint32_t x = 0; x < size; ++x) counts[x] += set_between(row, xs[x], xs[x + 1]);
+  add_row_between(row, volume.row_words, xs, counts.data());
 }
 
 }  // namespace

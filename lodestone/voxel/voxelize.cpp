@@ -14,6 +14,7 @@
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/voxel/column_raster_detail.h"
 #include "lodestone/voxel/fill_winding_detail.h"
+#include "lodestone/voxel/surface_voxels.h"
 
 namespace lodestone::voxel {
 
@@ -143,6 +144,13 @@ Result<Voxelized> voxelize(const spatial::Surface& surface, const VoxelGrid& gri
   if (const Result<void> ok = check(grid); !ok) return fail(ok.error());
   Stopwatch watch;
   Voxelized out;
+  if (options.fill == FillRule::shrinkwrap) {
+    Result<BitVolume> wrapped = shrinkwrap(surface, grid, options.close_voxels, task);
+    if (!wrapped) return fail(wrapped.error());
+    out.volume = std::move(*wrapped);
+    out.seconds.filling = watch.lap();
+    return out;
+  }
   out.volume = BitVolume(grid);
   if (options.fill == FillRule::winding) {
     detail::fill_winding(surface, out.volume, task);

@@ -19,10 +19,14 @@ enum class FillRule {
   /// A generalised winding number above a half, either way round: open surfaces, whose holes are closed by what seems
   /// most inside. Between crossings it is looked up at both ends and in the middle, and wherever these leave a doubt.
   winding,
+  /// What can't be reached from outside once the surface is grown by a radius: holes up to twice of it are closed,
+  /// hollows filled (shrinkwrap() in surface_voxels.h).
+  shrinkwrap,
 };
 
 struct VoxelizeOptions {
   FillRule fill = FillRule::parity;
+  double close_voxels = 2;  ///< shrinkwrap: the radius, voxels
 };
 
 struct VoxelizeSeconds {

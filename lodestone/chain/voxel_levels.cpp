@@ -1,0 +1,187 @@
+#include "lodestone/chain/voxel_levels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodestone/base/stopwatch.h"
+#include "lodestone/base/units.h"
+#include "lodestone/core/parts.h"
+#include "lodestone/voxel/edge_ratio.h"
+#include "lodestone/voxel/isosurface.h"
+#include "lodestone/voxel/project.h"
+#include "lodestone/voxel/resample.h"
+#include "lodestone/voxel/sharp_surface.h"
+
+namespace lodestone::chain {
+
+namespace {
+
+constexpr double kHalf = 127.5;  // of shares from 0 to 255
+
+Result<void> check(const VoxelOptions& options, std::uint32_t finest) {
+  const auto bad = [](std::string what, std::string remedy) {
+    return fail(ErrorCode::bad_argument, std::move(what), {}, std::move(remedy));
+  };
+  if (options.supersample > 64) return bad("more than 64 voxels in one are asked for", "use 1 to 64");
+  if (options.close < 0) return bad("a radius below 0 is asked for", "use one above");
+  if (finest < 4 || finest > 16'384) return bad(fmt::format("a resolution of {} can't be", finest), "use 4 to 16,384");
+  return {};
+}
+
+// The iso at which the surface encloses a volume: secants between 1 and 254.
+Result<Mesh> contour_of_volume(const ScalarVolume<std::uint8_t>& shares, double wanted, const Task& task) {
+  double low = 1, high = 254;
+  std::optional<Mesh> best;
+  double best_off = 0;
+  double iso = kHalf;
+  for (int turn = 0; turn < 10; ++turn) {
+    Result<Mesh> mesh = voxel::isosurface(shares, {iso}, task);
+    if (!mesh && mesh.error().code != ErrorCode::empty) return mesh;
+    const double volume = mesh ? volume_of(*mesh) : 0;
+    const double off = std::abs(volume - wanted);
+    if (mesh && (!best || off < best_off)) {
+      best = std::move(*mesh);
+      best_off = off;
+    }
+    if (best && best_off <= 1e-4 * wanted) break;
+    (volume > wanted ? low : high) = iso;
+    iso = (low + high) / 2;
+  }
+  if (!best) return fail(ErrorCode::empty, "no voxel is inside");
+  return std::move(*best);
+}
+
+std::string name_of_part(const Model& model, const Instance& instance, std::size_t part, Vec3d at) {
+  const Mesh& mesh = model.meshes[instance.mesh];
+  const std::string& name = instance.name.empty() ? mesh.name : instance.name;
+  return fmt::format("{}piece {} at ({}, {}, {})", name.empty() ? "" : "'" + name + "', ", part + 1, short_number(at.x),
+                     short_number(at.y), short_number(at.z));
+}
+
+}  // namespace
+
+Result<VoxelLevels> VoxelLevels::create(const Model& model, const VoxelOptions& options, std::uint32_t finest,
+                                        Task task) {
+  if (const Result<void> ok = check(options, finest); !ok) return fail(ok.error());
+  Stopwatch watch;
+  Result<FillChoice> choice = choose_fill(model, options.fill, task.part(0.2));
+  if (!choice) return fail(choice.error());
+  choice->close = options.close;
+  const bool slow = choice->fill == voxel::FillRule::winding || choice->fill == voxel::FillRule::shrinkwrap;
+  const std::uint32_t usual = slow ? 2 : 4;
+  const std::uint32_t supersample = options.supersample > 0 ? options.supersample : usual;
+  SolidOptions solid_options;
+  solid_options.resolution = finest * supersample;
+  solid_options.margin = solid_options.multiple = supersample;  // whole voxels of the finest level
+  Result<Solid> solid = solid_of(model, *choice, solid_options, task.part(0.6));
+  if (!solid) return fail(solid.error());
+  Result<VoxelLevels> made = of_solid(std::move(*solid), *choice, options, task);
+  if (!made) return made;
+  made->seconds_.prepare = watch.total() - made->seconds_.voxelize;
+  return made;
+}
+
+Result<VoxelLevels> VoxelLevels::of_solid(Solid solid, const FillChoice& fill, const VoxelOptions& options, Task task) {
+  VoxelLevels out;
+  out.options_ = options;
+  out.fill_ = fill;
+  out.solid_ = std::make_unique<Solid>(std::move(solid));
+  out.voxels_inside_ = out.solid_->volume.set_count();
+  out.source_ = std::make_unique<spatial::Bvh>(out.solid_->surface, task);
+  out.seconds_.voxelize = out.solid_->seconds.slicing + out.solid_->seconds.filling;
+  if (task.cancelled()) return cancelled_error("remeshing");
+  return out;
+}
+
+std::uint32_t VoxelLevels::most_resolution() const {
+  const auto& size = solid_->volume.grid.size;
+  return *std::max_element(size.begin(), size.end());
+}
+
+std::array<std::uint32_t, 3> VoxelLevels::size_at(std::uint32_t resolution) const {
+  const auto& solid = solid_->volume.grid.size;
+  const std::uint32_t longest = most_resolution();
+  std::array<std::uint32_t, 3> size{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint64_t wanted = (std::uint64_t{solid[k]} * resolution + longest / 2) / longest;
+    size[k] = std::clamp<std::uint32_t>(static_cast<std::uint32_t>(wanted), 1, solid[k]);
+  }
+  return size;
+}
+
+Result<Mesh> VoxelLevels::surface_at(std::uint32_t resolution, Task task) {
+  if (resolution < 4 || resolution > most_resolution()) {
+    return fail(ErrorCode::bad_argument, fmt::format("a resolution of {} can't be", resolution), {},
+                fmt::format("use 4 to {}", most_resolution()));
+  }
+  const BitVolume& bits = solid_->volume;
+  const std::array<std::uint32_t, 3> size = size_at(resolution);
+  VoxelGrid level = bits.grid;
+  level.size = size;
+  if (const Result<void> room = check_memory(level, 1.2); !room) return fail(room.error());
+  Stopwatch watch;
+  const auto thin = [&](Error error) {
+    if (error.code != ErrorCode::empty) return fail(std::move(error));
+    return fail(ErrorCode::empty,
+                fmt::format("no part is half as thick as a voxel of {} along the longest side", resolution), {},
+                "raise --resolution, or use --keep-thin");
+  };
+  if (options_.placement == VertexPlacement::edge_ratio) {
+    Result<Mesh> mesh = voxel::edge_ratio_surface(bits, size, {}, task);
+    seconds_.isosurface += watch.lap();
+    return mesh ? std::move(mesh) : Result<Mesh>(thin(mesh.error()));
+  }
+  const auto shares =
+      options_.keep_thin ? voxel::downsample_thin(bits, size, task) : voxel::downsample(bits, size, task);
+  if (!shares) return fail(shares.error());
+  seconds_.resample += watch.lap();
+  const Vec3d voxel = shares->grid.spacing;
+  const double longest = std::max({voxel.x, voxel.y, voxel.z});
+  if (options_.placement == VertexPlacement::sharp) {
+    Result<voxel::SharpSurface> sharp = voxel::sharp_surface(*shares, *source_, {}, task);
+    seconds_.isosurface += watch.lap();
+    return sharp ? Result<Mesh>(std::move(sharp->mesh)) : Result<Mesh>(thin(sharp.error()));
+  }
+  const Vec3d small = bits.grid.spacing;
+  const double volume = static_cast<double>(voxels_inside_) * small.x * small.y * small.z;
+  const bool by_volume = options_.keep_volume && options_.placement == VertexPlacement::linear;
+  Result<Mesh> mesh = by_volume ? contour_of_volume(*shares, volume, task) : voxel::isosurface(*shares, {kHalf}, task);
+  if (!mesh) return thin(mesh.error());
+  if (options_.placement == VertexPlacement::project) voxel::project(*mesh, *source_, longest, task);
+  if (task.cancelled()) return cancelled_error("remeshing");
+  seconds_.isosurface += watch.lap();
+  return mesh;
+}
+
+std::vector<std::string> VoxelLevels::vanished(const Model& model, const Mesh& surface,
+                                               std::uint32_t resolution) const {
+  const Result<spatial::Surface> flat = spatial::flatten(make_model(surface));
+  if (!flat) return {};
+  const spatial::Bvh tree(*flat);
+  const double voxel = solid_->volume.grid.spacing.x * most_resolution() / resolution;
+  const double near_sq = voxel * voxel;
+  std::vector<std::string> out;
+  for (const Instance& instance : model.instances) {
+    const Mesh& mesh = model.meshes[instance.mesh];
+    const Parts parts = parts_of(mesh);
+    if (parts.count < 2 && model.instances.size() < 2) continue;
+    std::vector<std::uint8_t> seen(parts.count, 0);
+    std::vector<std::uint32_t> first(parts.count, kNone);
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+      const std::uint32_t part = parts.of_vertex[v];
+      if (part == kNone || seen[part] != 0) continue;
+      if (first[part] == kNone) first[part] = v;
+      const spatial::Nearest n = tree.closest(instance.transform.point(mesh.position(v)));
+      if (n.distance_sq <= near_sq) seen[part] = 1;
+    }
+    for (std::size_t p = 0; p < parts.count; ++p) {
+      if (seen[p] != 0 || first[p] == kNone) continue;
+      out.push_back(name_of_part(model, instance, p, instance.transform.point(mesh.position(first[p]))));
+    }
+  }
+  return out;
+}
+
+}  // namespace lodestone::chain
