@@ -54,7 +54,7 @@ void add_result(const chain::RemeshResult& result, VoxelReport& report) {
   report.fill = name_of(result.fill.fill);
   report.fill_reason = result.fill.reason;
   report.triangles = result.level.triangles;
-  report.error = result.level.error;
+  if (result.measured) report.error = result.level.error;
   report.method = result.level.method;
   report.shortfall = result.shortfall;
   report.prepare_seconds = result.seconds.prepare;

@@ -303,7 +303,7 @@ Result<Model> read_scan_model(const fs::path& path, const VolumeRequest& request
   Result<chain::ScanSurface> surface = chain::surface_of_scan(std::move(*cloud), options, task.part(0.8));
   if (!surface) {
     Error error = surface.error();
-    if (error.where.empty()) error.where = path.string();
+    error.where = path.string();
     return fail(std::move(error));
   }
   surface->model.files = {path};

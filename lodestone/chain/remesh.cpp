@@ -132,7 +132,11 @@ Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Ta
   Result<VoxelLevels> levels = VoxelLevels::create(model, options.voxel, *finest, task.part(0.3));
   if (!levels) return fail(levels.error());
   std::optional<measure::Reference> reference;
-  if (options.measure || options.error > 0) {
+  const bool measures = options.error > 0 || (options.measure && !levels->by_slabs());
+  if (options.measure && !measures) {
+    out.warnings.emplace_back("the error is not measured on a surface as large as this: 'lod measure' does it");
+  }
+  if (measures) {
     const Stopwatch preparing;
     Result<measure::Reference> made = measure::Reference::create(model, task.part(0.1));
     if (!made) return fail(made.error());
@@ -150,8 +154,9 @@ Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Ta
   out.level_resolution = cut->resolution;
   out.voxels_inside = levels->voxels_inside();
   out.fill = levels->fill();
-  out.warnings = levels->solid().warnings;
-  tell_vanished(*levels, model, cut->mesh, cut->resolution, out.warnings);
+  const std::vector<std::string>& assumed = levels->solid().warnings;
+  out.warnings.insert(out.warnings.end(), assumed.begin(), assumed.end());
+  if (!levels->by_slabs()) tell_vanished(*levels, model, cut->mesh, cut->resolution, out.warnings);
   if (options.then_collapse) {
     const Result<void> done = collapse(model, options, std::move(cut->mesh), out, task.part(0.3, "collapsing"));
     if (!done) return fail(done.error());
@@ -171,6 +176,7 @@ Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Ta
     cut->distance = *d;
     out.seconds.measure += measuring.total();
   }
+  out.measured = cut->distance.has_value();
   if (cut->distance) level.error = detail::level_error(*cut->distance);
   level.seconds = watch.total();
   return out;

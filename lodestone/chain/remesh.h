@@ -30,6 +30,7 @@ struct RemeshOptions {
 
 struct RemeshResult {
   Level level;                                ///< method "voxels" or "voxels and edge collapse"
+  bool measured = true;                       ///< false: level.error means nothing
   std::uint32_t level_resolution = 0;         ///< of the surface, along the longest side
   std::array<std::uint32_t, 3> resolution{};  ///< of the solid
   std::uint64_t voxels_inside = 0;

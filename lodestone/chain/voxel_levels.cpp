@@ -13,6 +13,7 @@
 #include "lodestone/voxel/project.h"
 #include "lodestone/voxel/resample.h"
 #include "lodestone/voxel/sharp_surface.h"
+#include "lodestone/voxel/slab_surface.h"
 
 namespace lodestone::chain {
 
@@ -28,6 +29,18 @@ Result<void> check(const VoxelOptions& options, std::uint32_t finest) {
   if (options.close < 0) return bad("a radius below 0 is asked for", "use one above");
   if (finest < 4 || finest > 16'384) return bad(fmt::format("a resolution of {} can't be", finest), "use 4 to 16,384");
   return {};
+}
+
+// Above this a solid and the shares of a level are not held in memory whole.
+constexpr double kWholeBytes = 1.2e9;
+
+bool needs_slabs(const VoxelGrid& grid, std::uint32_t supersample, const VoxelOptions& options,
+                 const FillChoice& choice) {
+  const auto voxels = static_cast<double>(grid.count());
+  const double ratio = static_cast<double>(supersample) * supersample * supersample;
+  const bool can =
+      options.placement == VertexPlacement::project && !options.keep_thin && choice.fill != voxel::FillRule::shrinkwrap;
+  return can && voxels / 8 + 1.2 * voxels / ratio > kWholeBytes;
 }
 
 // The iso at which the surface encloses a volume: secants between 1 and 254.
@@ -75,12 +88,57 @@ Result<VoxelLevels> VoxelLevels::create(const Model& model, const VoxelOptions& 
   SolidOptions solid_options;
   solid_options.resolution = finest * supersample;
   solid_options.margin = solid_options.multiple = supersample;  // whole voxels of the finest level
-  Result<Solid> solid = solid_of(model, *choice, solid_options, task.part(0.6));
+  Result<VoxelGrid> grid = solid_grid(bounds_of(model), *choice, solid_options);
+  if (!grid) return fail(grid.error());
+  if (needs_slabs(*grid, supersample, options, *choice)) {
+    Result<VoxelLevels> slabs = of_grid(model, *grid, *choice, options, task);
+    if (slabs) slabs->seconds_.prepare = watch.total();
+    return slabs;
+  }
+  Result<Solid> solid = solid_in(model, *choice, *grid, task.part(0.6));
   if (!solid) return fail(solid.error());
   Result<VoxelLevels> made = of_solid(std::move(*solid), *choice, options, task);
   if (!made) return made;
   made->seconds_.prepare = watch.total() - made->seconds_.voxelize;
   return made;
+}
+
+// The surface alone, for solids that are made slab by slab.
+Result<VoxelLevels> VoxelLevels::of_grid(const Model& model, const VoxelGrid& grid, const FillChoice& fill,
+                                         const VoxelOptions& options, const Task& task) {
+  Solid solid;
+  Result<spatial::Surface> surface = spatial::flatten(model, task);
+  if (!surface) return fail(surface.error());
+  solid.surface = std::move(*surface);
+  solid.volume.grid = grid;
+  Result<VoxelLevels> out = of_solid(std::move(solid), fill, options, task);
+  if (out) out->slabs_ = true;
+  return out;
+}
+
+// By slabs vertices lie half way between voxels before they are projected.
+Result<Mesh> VoxelLevels::surface_by_slabs(std::uint32_t resolution, const Task& task) {
+  const VoxelGrid& grid = solid_->volume.grid;
+  const std::uint32_t ratio = most_resolution() / resolution;
+  if (ratio * resolution != most_resolution()) {
+    return fail(ErrorCode::bad_argument, fmt::format("a resolution of {} can't be made slab by slab", resolution), {},
+                "ask for --resolution alone");
+  }
+  std::array<std::uint32_t, 3> size{};
+  for (std::size_t k = 0; k < 3; ++k) size[k] = grid.size[k] / ratio;
+  VoxelGrid level = grid;
+  level.size = size;
+  if (const Result<void> room = check_memory(level, 0.2); !room) return fail(room.error());
+  Result<voxel::SlabSurface> made = voxel::slab_surface(solid_->surface, grid, size, {fill_.fill}, task);
+  if (!made) return fail(made.error());
+  Stopwatch watch;
+  voxel::project(made->mesh, *source_, grid.spacing.x * ratio, task);
+  if (task.cancelled()) return cancelled_error("remeshing");
+  voxels_inside_ = made->voxels_inside;
+  seconds_.voxelize += made->voxelize_seconds;
+  seconds_.resample += made->resample_seconds;
+  seconds_.isosurface += made->isosurface_seconds + watch.lap();
+  return std::move(made->mesh);
 }
 
 Result<VoxelLevels> VoxelLevels::of_solid(Solid solid, const FillChoice& fill, const VoxelOptions& options, Task task) {
@@ -116,6 +174,7 @@ Result<Mesh> VoxelLevels::surface_at(std::uint32_t resolution, Task task) {
     return fail(ErrorCode::bad_argument, fmt::format("a resolution of {} can't be", resolution), {},
                 fmt::format("use 4 to {}", most_resolution()));
   }
+  if (slabs_) return surface_by_slabs(resolution, task);
   const BitVolume& bits = solid_->volume;
   const std::array<std::uint32_t, 3> size = size_at(resolution);
   VoxelGrid level = bits.grid;

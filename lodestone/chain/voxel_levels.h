@@ -60,17 +60,23 @@ class VoxelLevels {
   const FillChoice& fill() const { return fill_; }
   const VoxelSeconds& seconds() const { return seconds_; }
   std::uint32_t most_resolution() const;
+  /// True for grids whose solid would not fit: each surface then voxelizes by itself.
+  bool by_slabs() const { return slabs_; }
   std::uint64_t voxels_inside() const { return voxels_inside_; }
   /// Pieces of the model of which the surface at a resolution has nothing within a voxel, by name where they have one.
   std::vector<std::string> vanished(const Model& model, const Mesh& surface, std::uint32_t resolution) const;
 
  private:
+  static Result<VoxelLevels> of_grid(const Model& model, const VoxelGrid& grid, const FillChoice& fill,
+                                     const VoxelOptions& options, const Task& task);
+  Result<Mesh> surface_by_slabs(std::uint32_t resolution, const Task& task);
   std::array<std::uint32_t, 3> size_at(std::uint32_t resolution) const;
   VoxelOptions options_;
   FillChoice fill_;
   std::unique_ptr<Solid> solid_;
   std::unique_ptr<spatial::Bvh> source_;  // of solid_->surface
   std::uint64_t voxels_inside_ = 0;
+  bool slabs_ = false;  // no solid is kept: each surface makes its own, slab by slab
   VoxelSeconds seconds_;
 };
 
