@@ -150,6 +150,7 @@ Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Ta
   out.seconds.voxelize = made.voxelize;
   out.seconds.resample = made.resample;
   out.seconds.isosurface = made.isosurface;
+  out.seconds.collapse = made.collapse;
   out.resolution = levels->solid().volume.grid.size;
   out.level_resolution = cut->resolution;
   out.voxels_inside = levels->voxels_inside();

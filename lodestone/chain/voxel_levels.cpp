@@ -8,6 +8,7 @@
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 #include "lodestone/core/parts.h"
+#include "lodestone/simplify/edge_collapse.h"
 #include "lodestone/voxel/edge_ratio.h"
 #include "lodestone/voxel/isosurface.h"
 #include "lodestone/voxel/project.h"
@@ -26,6 +27,7 @@ Result<void> check(const VoxelOptions& options, std::uint32_t finest) {
     return fail(ErrorCode::bad_argument, std::move(what), {}, std::move(remedy));
   };
   if (options.supersample > 64) return bad("more than 64 voxels in one are asked for", "use 1 to 64");
+  if (!(options.adaptive >= 0 && options.adaptive <= 10)) return bad("such a share of a voxel can't be", "use 0 to 10");
   if (options.close < 0) return bad("a radius below 0 is asked for", "use one above");
   if (finest < 4 || finest > 16'384) return bad(fmt::format("a resolution of {} can't be", finest), "use 4 to 16,384");
   return {};
@@ -170,6 +172,19 @@ std::array<std::uint32_t, 3> VoxelLevels::size_at(std::uint32_t resolution) cons
 }
 
 Result<Mesh> VoxelLevels::surface_at(std::uint32_t resolution, Task task) {
+  Result<Mesh> mesh = even_surface_at(resolution, task);
+  if (!mesh || !(options_.adaptive > 0)) return mesh;
+  const Stopwatch watch;
+  simplify::EdgeCollapseOptions options;
+  const double voxel = solid_->volume.grid.spacing.x * most_resolution() / resolution;
+  options.max_error = options_.adaptive * voxel;
+  Result<simplify::EdgeCollapseResult> merged = simplify::collapse_edges(*mesh, options, task);
+  if (!merged) return fail(merged.error());
+  seconds_.collapse += watch.total();
+  return std::move(merged->mesh);
+}
+
+Result<Mesh> VoxelLevels::even_surface_at(std::uint32_t resolution, const Task& task) {
   if (resolution < 4 || resolution > most_resolution()) {
     return fail(ErrorCode::bad_argument, fmt::format("a resolution of {} can't be", resolution), {},
                 fmt::format("use 4 to {}", most_resolution()));

@@ -25,7 +25,7 @@ struct Slice {
   std::vector<std::uint32_t> crossing;  // numbers of all, ring after ring
   std::vector<std::uint64_t> cube;      // of each ring
   std::vector<Vec3d> vertex;            // of each ring
-  std::vector<std::uint8_t> creased;    // vertex on a crease
+  std::vector<std::uint8_t> creased;    // 1: vertex on a crease, 2: on a corner
 };
 
 // What all steps work on.
@@ -160,7 +160,7 @@ void place_vertices(Dual& dual, const std::vector<detail::CreasePoint>& creases,
       for (; r < end; ++r) {
         if (r == taken) {
           slice.vertex[r] = crease->point;
-          slice.creased[r] = 1;
+          slice.creased[r] = crease->corner ? 2 : 1;
         } else {
           slice.vertex[r] = moved[r];
         }
@@ -175,36 +175,44 @@ std::pair<std::size_t, std::size_t> rings_of_cube(const Slice& slice, std::uint6
   return {static_cast<std::size_t>(low - slice.cube.begin()), static_cast<std::size_t>(high - slice.cube.begin())};
 }
 
-// A crease may run through cubes that are not cut, where its edge is thin. The nearest vertex beside them that is on no
-// crease yet goes there, so that the crease has no gap.
-void fill_gaps(Dual& dual, const std::vector<detail::CreasePoint>& creases) {
+// The nearest vertex beside a cube that is not cut goes to the crease in it: one on no crease yet, or, to a corner, one
+// on no corner.
+void take_vertex_beside(Dual& dual, const detail::CreasePoint& crease) {
   const std::uint64_t width = dual.contour.rows.width, height = dual.contour.rows.height;
+  const std::uint64_t z = crease.cube / width / height;
   const Vec3d s = dual.grid.spacing;
-  for (const detail::CreasePoint& crease : creases) {
-    const std::uint64_t z = crease.cube / width / height;
-    if (z >= dual.slices.size()) continue;
-    const auto own = rings_of_cube(dual.slices[z], crease.cube);
-    if (own.first != own.second) continue;
-    double least = s.x * s.x + s.y * s.y + s.z * s.z;
-    Slice* slice = nullptr;
-    std::size_t ring = 0;
-    for (std::uint64_t k = 0; k < 27; ++k) {
-      const std::uint64_t dz = k / 9, dy = k / 3 % 3, dx = k % 3;  // one more than the step
-      if (z + dz < 1 || z + dz - 1 >= dual.slices.size()) continue;
-      const std::uint64_t cube = crease.cube + dz * height * width + dy * width + dx - height * width - width - 1;
-      Slice& beside = dual.slices[z + dz - 1];
-      const auto [first, end] = rings_of_cube(beside, cube);
-      for (std::size_t r = first; r < end; ++r) {
-        const Vec3d d = beside.vertex[r] - crease.point;
-        if (beside.creased[r] != 0 || dot(d, d) >= least) continue;
-        least = dot(d, d);
-        slice = &beside;
-        ring = r;
-      }
+  double least = s.x * s.x + s.y * s.y + s.z * s.z;
+  Slice* slice = nullptr;
+  std::size_t ring = 0;
+  for (std::uint64_t k = 0; k < 27; ++k) {
+    const std::uint64_t dz = k / 9, dy = k / 3 % 3, dx = k % 3;  // one more than the step
+    if (z + dz < 1 || z + dz - 1 >= dual.slices.size()) continue;
+    const std::uint64_t cube = crease.cube + dz * height * width + dy * width + dx - height * width - width - 1;
+    Slice& beside = dual.slices[z + dz - 1];
+    const auto [first, end] = rings_of_cube(beside, cube);
+    for (std::size_t r = first; r < end; ++r) {
+      const Vec3d d = beside.vertex[r] - crease.point;
+      if (beside.creased[r] > (crease.corner ? 1 : 0) || dot(d, d) >= least) continue;
+      least = dot(d, d);
+      slice = &beside;
+      ring = r;
     }
-    if (slice == nullptr) continue;
-    slice->vertex[ring] = crease.point;
-    slice->creased[ring] = 1;
+  }
+  if (slice == nullptr) return;
+  slice->vertex[ring] = crease.point;
+  slice->creased[ring] = crease.corner ? 2 : 1;
+}
+
+// A crease may run through cubes that are not cut, where its edge is thin; it shall have no gap there. Corners first.
+void fill_gaps(Dual& dual, const std::vector<detail::CreasePoint>& creases) {
+  const std::uint64_t slice = std::uint64_t{dual.contour.rows.width} * dual.contour.rows.height;
+  for (const bool corners : {true, false}) {
+    for (const detail::CreasePoint& crease : creases) {
+      const std::uint64_t z = crease.cube / slice;
+      if (crease.corner != corners || z >= dual.slices.size()) continue;
+      const auto own = rings_of_cube(dual.slices[z], crease.cube);
+      if (own.first == own.second) take_vertex_beside(dual, crease);
+    }
   }
 }
 
@@ -412,7 +420,8 @@ Result<SharpSurface> sharp_surface(const VolumeView<std::uint8_t>& volume, const
   mesh.offset = contour->mesh.offset;
   for (const Slice& slice : dual.slices) {
     for (const Vec3d& at : slice.vertex) mesh.positions.push_back(to_float(at - mesh.offset));
-    out.features += static_cast<std::size_t>(std::count(slice.creased.begin(), slice.creased.end(), 1));
+    out.features += static_cast<std::size_t>(
+        std::count_if(slice.creased.begin(), slice.creased.end(), [](std::uint8_t c) { return c > 0; }));
   }
   Quads(dual, mesh).make(task);
   if (task.cancelled()) return cancelled_error("contouring");

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from support import Scratch, lod_path, run
 
-VERBS = ["build", "simplify", "measure", "render", "remesh", "voxelize", "info", "convert", "sample"]
+VERBS = ["build", "simplify", "measure", "render", "remesh", "voxelize", "boolean", "info", "convert", "sample"]
 ALL = VERBS + ["help", "completion"]
 
 

@@ -1,7 +1,7 @@
 """remesh and voxelize: closed surfaces by way of voxels."""
 from support import Scratch
 
-SECONDS = {"read", "prepare", "voxelize", "resample", "isosurface", "measure", "write", "total"}
+SECONDS = {"read", "prepare", "voxelize", "resample", "isosurface", "collapse", "measure", "write", "total"}
 
 
 class Voxels(Scratch):
@@ -17,8 +17,41 @@ class Voxels(Scratch):
         self.assertLess(report["relative_error"], 0.02)
         finer = self.json("remesh", "statue.ply", "-o", "f.ply", "--resolution", "120")
         self.assertLess(finer["mean_error"], report["mean_error"])
-        rough = self.json("remesh", "statue.ply", "-o", "n.ply", "--resolution", "40", "--no-project")
+        rough = self.json("remesh", "statue.ply", "-o", "n.ply", "--resolution", "40", "--place", "linear")
         self.assertLess(report["mean_error"], rough["mean_error"])
+
+    def test_targets(self):
+        report = self.json("remesh", "statue.ply", "-o", "r.ply", "--triangles", "6000")
+        self.assertTrue(5400 <= report["triangles"] <= 6000, report["triangles"])
+        report = self.json("remesh", "statue.ply", "-o", "r.ply", "--error", "1%")
+        self.assertLessEqual(report["relative_error"], 0.01)
+        report = self.json("remesh", "statue.ply", "-o", "r.ply", "--triangles", "600", "--then-collapse")
+        self.assertEqual((report["triangles"], report["method"]), (600, "voxels and edge collapse"))
+        shape = self.json("info", "r.ply")
+        self.assertTrue(shape["closed"] and shape["manifold"])
+
+    def test_ladders(self):
+        for more in ((), ("--then-collapse",)):
+            report = self.json("build", "statue.ply", "-o", "v.glb", "--method", "voxel", "--triangles", "4000,1000", *more)
+            counts = [level["triangles"] for level in report["levels"]]
+            self.assertEqual(len(counts), 3)
+            self.assertLessEqual(counts[1], 4000)
+            self.assertLessEqual(counts[2], 1000)
+            self.assertEqual(self.json("info", "v.glb")["levels"], 3)
+        self.assert_error(self.lod("build", "statue.ply", "-o", "w.glb", "--keep-thin", code=2), "--method voxel")
+
+    def test_boolean(self):
+        self.lod("sample", "sphere", "--level", "3", "-o", "ball.ply")
+        report = self.json("boolean", "ball.ply", "difference", "statue.ply", "d.ply", "--resolution", "48")
+        self.assertGreater(report["voxels_inside"], 0)
+        shape = self.json("info", "d.ply")
+        self.assertTrue(shape["closed"] and shape["manifold"])
+        self.json("boolean", "ball.ply", "union", "statue.ply", "intersection", "ball.ply", "-o", "e.ply")
+        for words, part in ((("ball.ply", "xor", "statue.ply", "f.ply"), "xor"),
+                            (("ball.ply", "union", "statue.ply"), "output"),
+                            (("ball.ply", "union", "union", "g.ply"), "union")):
+            with self.subTest(words):
+                self.lod("boolean", *words, code=(1 if words[2] == "union" else 2))
 
     def test_voxelize(self):
         report = self.json("voxelize", "statue.ply", "-o", "c.ply", "--resolution", "30")
