@@ -59,6 +59,14 @@ OptionGroup level_group() {
         "of voxels say) or edge-ratio (by a march along edges)",
         {"project", "sharp", "linear", "edge-ratio"},
         Completion::choices},
+       {"--adaptive",
+        "",
+        "T",
+        "",
+        "voxels",
+        "merge triangles where the surface is flat, as far as it moves by about this share of a voxel (0.1)",
+        {},
+        Completion::none},
        {"--keep-thin", "", "", "", "", "what is thinner than a voxel stays", {}, Completion::none},
        {"--keep-volume", "", "", "", "", "with --place linear: the volume stays", {}, Completion::none},
        {"--then-collapse",
@@ -147,6 +155,11 @@ Result<chain::VoxelOptions> voxel_options(const Arguments& arguments, const Leng
   }
   for (const auto& [name, placement] : kPlacements) {
     if (arguments.text("--place") == name) options.placement = placement;
+  }
+  if (arguments.has("--adaptive")) {
+    const Result<double> adaptive = arguments.positive("--adaptive");
+    if (!adaptive) return fail(adaptive.error());
+    options.adaptive = *adaptive;
   }
   options.keep_thin = arguments.has("--keep-thin");
   options.keep_volume = arguments.has("--keep-volume");
