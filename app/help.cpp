@@ -64,7 +64,8 @@ std::string verb_help(const VerbSpec& verb) {
     out += fmt::format("  {}\n      {}\n", example.command, wrapped(example.text, kWidth, 6));
   }
   if (!verb.inputs.choices.empty()) {
-    out += fmt::format("\n{}: {}\n", verb.inputs.usage, fmt::join(verb.inputs.choices, ", "));
+    const std::string choices = fmt::format("{}: {}", verb.inputs.usage, fmt::join(verb.inputs.choices, ", "));
+    out += fmt::format("\n{}\n", wrapped(choices, kWidth, 0));
   }
   if (!verb.notes.empty()) out += "\n" + wrapped(verb.notes, kWidth, 0) + "\n";
   for (const OptionGroup& group : verb.groups) {

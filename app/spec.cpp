@@ -123,9 +123,9 @@ VerbSpec boolean_spec() {
           {"A OPERATION B [OPERATION C]... [OUTPUT]", 3, kAnyNumber, {}, Completion::file},
           {resolution_group(), solid_group(), level_group(), length_group(), measuring_group(kBuildSamples),
            output_group(true), general_group()},
-          {{"lod boolean statue.ply difference sphere.glb out.ply", "the statue without the sphere"},
+          {{"lod boolean sphere.glb difference statue.ply mould.ply", "the sphere without the statue: a mould"},
            {"lod boolean statue.ply union sphere.glb -o both.glb --resolution 200", "finer, as one GLB"},
-           {"lod boolean statue.ply union sphere.glb intersection tower.glb -o out.ply --json",
+           {"lod boolean sphere.glb difference statue.ply union small.ply -o out.ply --json",
             "from left to right; figures as JSON"}},
           "OPERATION is union, intersection or difference. Any number of models, combined from left to right; the last "
           "name is the output unless -o gives it. The result is closed and manifold whatever the input.",

@@ -55,7 +55,11 @@ Result<BooleanResult> boolean(std::span<const Model> models, const BooleanOption
     if (!choice) return fail(choice.error());
     choice->close = options.voxel.close;
     Result<Solid> made = solid_in(models[i], *choice, *grid, part);
-    if (!made) return fail(made.error());
+    if (!made) {
+      Error error = made.error();
+      if (error.where.empty()) error.where = fmt::format("model {}", i + 1);
+      return fail(std::move(error));
+    }
     out.seconds.voxelize += made->seconds.slicing + made->seconds.filling;
     out.warnings.insert(out.warnings.end(), made->warnings.begin(), made->warnings.end());
     if (i == 0) {

@@ -53,6 +53,7 @@ class Help(Scratch):
         """The files that examples name."""
         self.lod("sample", "statue", "--triangles", "6000", "-o", "statue.ply")
         self.lod("sample", "tower", "-o", "tower.glb")
+        self.lod("sample", "sphere", "--level", "4", "-o", "sphere.glb")
         self.lod("convert", "tower.glb", "tower.ply")
         self.lod("build", "statue.ply", "-o", "statue.glb", "--levels", "2")
         self.lod("simplify", "statue.ply", "-o", "small.ply", "--triangles", "2000")
