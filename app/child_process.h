@@ -1,8 +1,6 @@
 // Work that may crash or hang, in a process of its own with limits on memory and time.
 #pragma once
 
-#include <sys/resource.h>
-
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -18,8 +16,8 @@ namespace lodestone::app {
 inline constexpr int kReportDescriptor = 3;
 
 struct ChildLimits {
-  rlim_t memory_bytes;  ///< of addresses; also of any file that it writes
-  rlim_t cpu_seconds;
+  std::uint64_t memory_bytes;  ///< of addresses; also of any file that it writes
+  std::uint64_t cpu_seconds;
   std::chrono::seconds wall;
 };
 /// A file of a few kilobytes may not cost more than 2 GiB and 30 s; larger ones get more in proportion.

@@ -32,7 +32,7 @@ struct VoxelOptions {
   /// best; after projection more than 4 buy little). 0: 4, or 2 with winding and shrinkwrap, which take their time.
   std::uint32_t supersample = 0;
   VertexPlacement placement = VertexPlacement::project;
-  bool keep_thin = false;    ///< what is thinner than a voxel of the level stays, at least that thick before projection
+  bool keep_thin = false;  ///< what is thinner than a voxel of the level stays, at least that thick before projection
   /// Triangles are merged where the surface is flat, as far as it moves by about this share of a voxel; 0 = not. Even
   /// cells take as many in flat parts as in curved ones (paper 000, section 3.5.2): this takes fewer there, without a
   /// crack, as edges are collapsed.
