@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The command on every shared model, judged by tools that share no code with it.
 
-    real_test.py ladders|broken|formats|gltf|three --lod LOD --meshjudge JUDGE --data DIR --npm DIR
+    real_test.py ladders|broken|formats|gltf|three|volumes --lod LOD --meshjudge JUDGE --data DIR --npm DIR
 
 Exit status: 0 all well, 1 with a line for each thing that isn't, 77 when something it needs is missing.
 """
@@ -166,9 +166,63 @@ def three(t):
             t.complain(f"{path.name}: {text[:300]}")
 
 
+REFUSED = {"fixed2d.mhd": "single slice", "dicom_ct_uneven_spacing": "missing", "dicom_mr_two_orientations": "2 series",
+           "dicom_mr_two_series": "2 series"}
+
+
+def volumes(t):
+    """Every volume gives a closed surface where its file says, or a refusal that tells why."""
+    out = t.scratch / "v.ply"
+    boxes = {}
+
+    def surface(name, *options):
+        out.unlink(missing_ok=True)
+        run = t.lod("convert", t.args.data / "volumes" / name, "-o", out, *options)
+        t.checked += 1
+        if "not built in" in run.stderr:
+            sys.exit(77)
+        return run
+
+    for path in sorted((t.args.data / "volumes").iterdir()):
+        if path.suffix == ".raw":
+            continue
+        run = surface(path.name)
+        if path.name in REFUSED:
+            if run.returncode not in (1, 2) or REFUSED[path.name] not in run.stderr or out.exists():
+                t.complain(f"{path.name}: exit {run.returncode}: {run.stderr.strip()[-200:]}")
+            continue
+        if run.returncode != 0:
+            t.complain(f"{path.name}: exit {run.returncode}: {run.stderr.strip()[-200:]}")
+            continue
+        shape = t.judge("topology", out)
+        if not shape["closed"] or shape["nonmanifold_edges"] or shape["duplicate_faces"]:
+            t.complain(f"{path.name}: {shape}")
+        box = json.loads(t.lod("info", out, "--json").stdout)["bounds"]
+        boxes[path.name] = (box["min"], box["max"])
+    # The same values by other ways are the same surface.
+    for iso in ("40", "120.5"):
+        surface("nucleon_stack.tif", "--iso", iso)
+        stack = out.read_bytes()
+        surface("nucleon_41x41x41_uint8.raw", "--iso", iso, "--raw", "41,41,41")
+        if out.read_bytes() != stack:
+            t.complain(f"nucleon at {iso}: the TIFF and the bare values differ")
+    # First and last voxel of the head's slices by their position tags, half a voxel more where the surface closes.
+    low, high = boxes["dicom_pet_head"]
+    if not (-331.4 - 1.7 <= low[2] and high[2] <= -253.7 + 1.7):
+        t.complain(f"dicom_pet_head lies from {low} to {high}")
+    for series, size in (("1", "256"), ("2", "64")):
+        run = surface("dicom_mr_two_series", "--series", series)
+        if run.returncode != 0:
+            t.complain(f"--series {series}: {run.stderr.strip()[-200:]}")
+    for options, part in ((("--iso", "99999"), "180"), (("--series", "7"), ""), (("--iso", "x"), "number")):
+        run = surface("brain_uchar_8.nii.gz", *options)
+        if options[0] == "--iso" and (run.returncode == 0 or part not in run.stderr):
+            t.complain(f"{options}: exit {run.returncode}: {run.stderr.strip()[-200:]}")
+
+
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("part", choices=["ladders", "broken", "formats", "gltf", "three"])
+    parser.add_argument("part", choices=["ladders", "broken", "formats", "gltf", "three", "volumes"])
     for name in ("--lod", "--meshjudge"):
         parser.add_argument(name, required=True)
     for name in ("--data", "--npm"):
