@@ -42,6 +42,14 @@ OptionGroup volume_group() {
             "take the median of 3 x 3 x 3 values first, against speckles",
             {},
             Completion::none},
+           {"--trilinear",
+            "",
+            "",
+            "",
+            "",
+            "join or part ambiguous corners as the trilinear interpolant does (else they are parted)",
+            {},
+            Completion::none},
            {"--series",
             "",
             "S",
@@ -149,6 +157,7 @@ Result<io::RawLayout> raw_layout(const Arguments& arguments) {
 
 Result<void> read_smoothing(const Arguments& arguments, chain::VolumeSurfaceOptions& options) {
   options.median = arguments.has("--median");
+  options.trilinear = arguments.has("--trilinear");
   if (!arguments.has("--smooth")) return {};
   const std::string text = arguments.text("--smooth");
   char* rest = nullptr;

@@ -16,7 +16,8 @@ struct VolumeSurfaceOptions {
   bool labels = false;        ///< values are labels: a mesh for each whole number but 0, named "label N"
   double smooth = 0;  ///< blurs the values before contouring: standard deviation in voxels or millimetres; 0 = not
   bool smooth_in_voxels = true;
-  bool median = false;  ///< takes the median of 3 x 3 x 3 values first, against speckles
+  bool trilinear = false;  ///< with `iso`: the topology of the trilinear interpolant, see voxel::IsosurfaceOptions
+  bool median = false;     ///< takes the median of 3 x 3 x 3 values first, against speckles
 };
 
 struct VolumeSurface {

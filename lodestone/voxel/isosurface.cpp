@@ -14,6 +14,7 @@
 #include "lodestone/voxel/cube_surface_detail.h"
 #include "lodestone/voxel/inside_rows_detail.h"
 #include "lodestone/voxel/isosurface_detail.h"
+#include "lodestone/voxel/trilinear_cubes_detail.h"
 
 namespace lodestone::voxel {
 
@@ -172,10 +173,34 @@ Result<detail::Contour> contour_of(const VolumeView<T>& volume, double iso, cons
   return detail::Contour{std::move(rows), std::move(*surface), std::move(mesh)};
 }
 
+// Less the iso value; far below it outside of the volume, and where it is no number.
+template <class T>
+detail::CornerValues corner_values(const VolumeView<T>& volume, double iso, std::uint32_t x, std::uint32_t y,
+                                   std::uint32_t z) {
+  constexpr double kFar = -1e100;
+  const auto& size = volume.grid.size;
+  detail::CornerValues values{};
+  for (std::uint32_t k = 0; k < 8; ++k) {
+    const std::uint32_t px = x + (k & 1), py = y + (k >> 1 & 1), pz = z + (k >> 2 & 1);
+    const bool there = px >= 1 && py >= 1 && pz >= 1 && px <= size[0] && py <= size[1] && pz <= size[2];
+    const double value = there ? static_cast<double>(volume.at(px - 1, py - 1, pz - 1)) - iso : kFar;
+    values[k] = std::isfinite(value) ? value : kFar;
+  }
+  return values;
+}
+
 template <class T>
 Result<Mesh> surface_of(const VolumeView<T>& volume, const IsosurfaceOptions& options, const Task& task) {
   Result<detail::Contour> made = contour_of(volume, options.iso, task);
   if (!made) return fail(made.error());
+  if (options.trilinear) {
+    made->mesh.triangles.clear();
+    const auto values_at = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+      return corner_values(volume, options.iso, x, y, z);
+    };
+    detail::make_trilinear_triangles(made->rows, made->surface, values_at, made->mesh, task);
+    if (task.cancelled()) return cancelled_error("contouring");
+  }
   return std::move(made->mesh);
 }
 

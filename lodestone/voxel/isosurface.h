@@ -12,6 +12,11 @@ namespace lodestone::voxel {
 
 struct IsosurfaceOptions {
   double iso = 0.5;  ///< what is above is inside
+  /// The surface has the topology of the trilinear interpolant: faces whose inside corners lie opposite join them where
+  /// the interpolant does, and two rings that a tube joins get it (Marching Cubes 33). For smooth values, as scanners
+  /// give them; else such corners are always parted. Adds vertices within cubes. In cubes with three rings or more each
+  /// is taken for a piece of its own.
+  bool trilinear = false;
 };
 
 /// The surface between voxels above `iso` and those that are not, cut by cubes whose corners are the voxels' centres
