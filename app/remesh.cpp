@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/bake_run.h"
 #include "app/json.h"
 #include "app/shared_options.h"
 #include "app/verbs.h"
@@ -72,6 +73,8 @@ Result<ExitCode> run_remesh(const Arguments& arguments, Console& console) {
   if (!request) return fail(request.error());
   const Result<LengthRules> lengths = length_rules(arguments);
   if (!lengths) return fail(lengths.error());
+  const Result<BakePlan> bake = bake_plan(arguments);
+  if (!bake) return fail(bake.error());
   Stopwatch watch;
   VoxelReport report;
   Result<Model> model = read_solid(*request, report, console);
@@ -84,6 +87,11 @@ Result<ExitCode> run_remesh(const Arguments& arguments, Console& console) {
   Result<chain::RemeshResult> result = chain::remesh(*model, *options, console.task().part(0.8, "remeshing"));
   if (!result) return fail(with_place(result.error(), report.input));
   add_result(*result, report);
+  const Result<AttributeSource> source = AttributeSource::create(*model, *bake, result->warnings, console.task());
+  if (!source) return fail(source.error());
+  if (const Result<void> added = source->add_to(result->level.model, 0, console.task()); !added) {
+    return fail(with_place(added.error(), report.input));
+  }
   tell(report, result->warnings, console);
   watch.lap();
   if (const Result<void> written = write_surface(result->level.model, *request, report, console); !written) {

@@ -34,6 +34,9 @@ struct Material {
   TextureCoordinates base_color_coordinates;
   /// The texture decoded; null until io::decode_base_colors() was asked for it, or where it can't be decoded.
   std::shared_ptr<const Pixels> base_color_pixels;
+  /// Tangent space, +Y up as in glTF; looks where set 0 says. May be null. Kept for writing: readers of glTF leave it
+  /// to the document, and nothing is drawn with it.
+  std::shared_ptr<const Image> normal_texture;
   bool double_sided = false;
   float alpha_cutoff = 0;  ///< nothing is drawn where alpha is below it (glTF's MASK); 0 = no mask
 };

@@ -74,26 +74,51 @@ Json make_fresh_document(const Model& model) {
   return json;
 }
 
+namespace {
+
+// The textures of a document, each image once.
+class FreshTextures {
+ public:
+  FreshTextures(Json& json, GltfPack& pack) : json_(json), pack_(pack) {}
+
+  // {"index": …}; null for an image that is missing or of a kind that glTF doesn't hold.
+  Json info(const Image* image) {
+    if (image == nullptr || image->encoded.empty() || (image->mime != "image/png" && image->mime != "image/jpeg")) {
+      return nullptr;
+    }
+    const auto [known, is_new] = textures_.emplace(image, textures_.size());
+    if (is_new) {
+      const std::string_view bytes(reinterpret_cast<const char*>(image->encoded.data()), image->encoded.size());
+      json_["images"].push_back({{"bufferView", pack_.add_bytes(0, bytes)}, {"mimeType", image->mime}});
+      if (!image->name.empty()) json_["images"].back()["name"] = image->name;
+      json_["textures"].push_back({{"source", known->second}});
+    }
+    return {{"index", known->second}};
+  }
+
+ private:
+  Json& json_;
+  GltfPack& pack_;
+  std::map<const Image*, std::size_t> textures_;
+};
+
+}  // namespace
+
 void add_fresh_materials(const Model& model, Json& json, GltfPack& pack) {
-  std::map<const Image*, std::size_t> textures;
+  FreshTextures textures(json, pack);
   for (const Material& material : model.materials) {
     Json out = Json::object();
     if (!material.name.empty()) out["name"] = material.name;
     Json pbr = {{"baseColorFactor", material.base_color},
                 {"metallicFactor", material.metallic},
                 {"roughnessFactor", material.roughness}};
-    const Image* image = material.base_color_texture.get();
-    if (image != nullptr && !image->encoded.empty() && (image->mime == "image/png" || image->mime == "image/jpeg")) {
-      const auto [known, is_new] = textures.emplace(image, textures.size());
-      if (is_new) {
-        const std::string_view bytes(reinterpret_cast<const char*>(image->encoded.data()), image->encoded.size());
-        json["images"].push_back({{"bufferView", pack.add_bytes(0, bytes)}, {"mimeType", image->mime}});
-        if (!image->name.empty()) json["images"].back()["name"] = image->name;
-        json["textures"].push_back({{"source", known->second}});
-      }
-      pbr["baseColorTexture"] = {{"index", known->second}};
+    if (Json info = textures.info(material.base_color_texture.get()); !info.is_null()) {
+      pbr["baseColorTexture"] = std::move(info);
     }
     out["pbrMetallicRoughness"] = std::move(pbr);
+    if (Json info = textures.info(material.normal_texture.get()); !info.is_null()) {
+      out["normalTexture"] = std::move(info);
+    }
     if (material.double_sided) out["doubleSided"] = true;
     if (material.base_color[3] < 1) out["alphaMode"] = "BLEND";
     json["materials"].push_back(std::move(out));
@@ -103,7 +128,7 @@ void add_fresh_materials(const Model& model, Json& json, GltfPack& pack) {
 void use_untextured_material(Json& json, Json& primitive) {
   if (!primitive.contains("material") || primitive["attributes"].contains("TEXCOORD_0")) return;
   Json twin = json["materials"][primitive["material"].get<std::size_t>()];
-  if (twin["pbrMetallicRoughness"].erase("baseColorTexture") == 0) return;
+  if (twin["pbrMetallicRoughness"].erase("baseColorTexture") + twin.erase("normalTexture") == 0) return;
   Json& materials = json["materials"];
   auto found = std::find(materials.begin(), materials.end(), twin);
   if (found == materials.end()) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <span>
+
 #include "lodestone/base/file.h"
 #include "lodestone/base/text.h"
 #include "lodestone/io/image_codecs_detail.h"
@@ -45,6 +47,18 @@ Result<std::uint64_t> write_picture(const Pixels& pixels, const std::filesystem:
   const std::uint64_t bytes = file->size();
   if (const Result<void> done = file->commit(); !done) return fail(done.error());
   return bytes;
+}
+
+Result<std::shared_ptr<const Image>> png_image(const Pixels& pixels, std::string name) {
+  if (pixels.width == 0 || pixels.height == 0) return fail(ErrorCode::bad_argument, "the picture has no pixels");
+  const Result<std::string> encoded = encode_png(pixels, name);
+  if (!encoded) return fail(encoded.error());
+  auto image = std::make_shared<Image>();
+  image->name = name + ".png";
+  image->mime = "image/png";
+  const auto bytes = std::as_bytes(std::span(*encoded));
+  image->encoded.assign(bytes.begin(), bytes.end());
+  return std::shared_ptr<const Image>(std::move(image));
 }
 
 }  // namespace lodestone::io

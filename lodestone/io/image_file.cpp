@@ -98,18 +98,22 @@ bool same_image(const Image& a, const Image& b) { return a.name == b.name && a.e
 
 }  // namespace
 
-std::vector<TextureFile> texture_files(std::span<const Material> materials, const std::filesystem::path& model) {
+std::vector<TextureFile> texture_files(std::span<const Material> materials, const std::filesystem::path& model,
+                                       bool with_normals) {
   const std::string stem = model.stem().string();
   std::vector<TextureFile> files;
   std::set<std::string> taken{model.filename().string(), stem + ".mtl"};
-  for (const Material& m : materials) {
-    const Image* image = m.base_color_texture.get();
-    if (image == nullptr || image->encoded.empty() || !texture_name(files, image).empty()) continue;
+  const auto add = [&](const Image* image) {
+    if (image == nullptr || image->encoded.empty() || !texture_name(files, image).empty()) return;
     std::string name = plain_name(image->name);
     if (name.empty()) name = fmt::format("{}_texture{}", stem, files.size());
     if (std::filesystem::path(name).extension().empty()) name += image_extension(image->mime);
     while (!taken.insert(name).second) name.insert(0, 1, '_');
     files.push_back({image, std::move(name)});
+  };
+  for (const Material& m : materials) {
+    add(m.base_color_texture.get());
+    if (with_normals) add(m.normal_texture.get());
   }
   return files;
 }

@@ -36,10 +36,12 @@ struct TextureFile {
   std::string name;
 };
 
-/// The base colour textures of the materials, each image once, in order of first use; those without bytes are left out.
+/// The base colour textures of the materials, with their normal textures if asked for, each image once, in order of
+/// first use; those without bytes are left out.
 /// Their names are the images' own without folders, safe to stand in a line of text, all different and different from
 /// `model` and its .mtl.
-std::vector<TextureFile> texture_files(std::span<const Material> materials, const std::filesystem::path& model);
+std::vector<TextureFile> texture_files(std::span<const Material> materials, const std::filesystem::path& model,
+                                       bool with_normals = false);
 /// The name of the image's file; empty if it has none.
 std::string_view texture_name(std::span<const TextureFile> files, const Image* image);
 /// Opens the file beside `model` and writes the image; the caller commits. Errors: cannot_write.

@@ -47,7 +47,7 @@ class LeftOut {
 };
 
 // The file name of a map line, which may hold blanks, behind its options.
-std::string_view map_name(std::string_view rest, LeftOut& left_out) {
+std::string_view map_name(std::string_view key, std::string_view rest, LeftOut& left_out) {
   while (true) {
     std::string_view ahead = trimmed(rest);
     if (!ahead.starts_with('-')) return ahead;
@@ -65,7 +65,7 @@ std::string_view map_name(std::string_view rest, LeftOut& left_out) {
     } else {
       return trimmed(rest);  // a name that begins with '-'
     }
-    left_out.add(fmt::format("map_Kd {}", option));
+    left_out.add(fmt::format("{} {}", key, option));
     rest = ahead;
   }
 }
@@ -104,7 +104,9 @@ class MtlParser {
     } else if (key == "pm") {
       if (take_numbers(rest, v, 1) == 1) material.metallic = share(v[0]);
     } else if (key == "map_kd") {
-      material.base_color_texture = image(map_name(rest, left_out_));
+      material.base_color_texture = image(map_name(word, rest, left_out_));
+    } else if (key == "norm") {
+      material.normal_texture = image(map_name(word, rest, left_out_));
     } else {
       left_out_.add(word.substr(0, 40));
     }
@@ -148,14 +150,15 @@ void read_mtl(std::string_view text, const std::filesystem::path& folder, std::v
 }
 
 std::string mtl_text(std::span<const Material> materials, std::span<const std::string> names,
-                     std::span<const std::string> textures) {
+                     std::span<const MtlTextures> textures) {
   std::string out = "# made by Lodestone\n";
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& m = materials[i];
     const std::array<float, 4>& color = m.base_color;
     out += fmt::format("newmtl {}\nKd {} {} {}\nd {}\n", names[i], color[0], color[1], color[2], color[3]);
     out += fmt::format("Pr {}\nPm {}\n", m.roughness, m.metallic);
-    if (!textures[i].empty()) out += fmt::format("map_Kd {}\n", textures[i]);
+    if (!textures[i].base_color.empty()) out += fmt::format("map_Kd {}\n", textures[i].base_color);
+    if (!textures[i].normal.empty()) out += fmt::format("norm {}\n", textures[i].normal);
   }
   return out;
 }

@@ -235,10 +235,11 @@ void warn_of_left_out(const Mesh& mesh, std::vector<std::string>& warnings) {
 
 // The .mtl and the textures that it names, written but not yet under their names.
 Result<void> write_materials(const ObjNames& names, const std::filesystem::path& path, std::vector<OutputFile>& files) {
-  const std::vector<TextureFile> textures = texture_files(names.materials, path);
-  std::vector<std::string> texture_names;
+  const std::vector<TextureFile> textures = texture_files(names.materials, path, true);
+  std::vector<MtlTextures> texture_names;
   for (const Material& m : names.materials) {
-    texture_names.emplace_back(texture_name(textures, m.base_color_texture.get()));
+    texture_names.push_back({std::string(texture_name(textures, m.base_color_texture.get())),
+                             std::string(texture_name(textures, m.normal_texture.get()))});
   }
   Result<OutputFile> mtl =
       OutputFile::create(std::filesystem::path(path).replace_filename(path.stem().string() + ".mtl"));

@@ -147,6 +147,9 @@ std::optional<TextureFile> find_texture(const Model& model, const Mesh& mesh, co
   for (const FaceGroup& g : mesh.groups) {
     if (g.material < model.materials.size()) drawn.push_back(model.materials[g.material]);
   }
+  if (std::any_of(drawn.begin(), drawn.end(), [](const Material& m) { return m.normal_texture != nullptr; })) {
+    warnings.push_back("PLY does not hold normal maps: left out");
+  }
   std::vector<TextureFile> textures = texture_files(drawn, path);
   if (textures.empty()) return std::nullopt;
   if (textures.size() > 1) {

@@ -10,16 +10,18 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/measure/correspondence_detail.h"
-#include "lodestone/measure/drawn_attributes_detail.h"
+#include "lodestone/measure/srgb_detail.h"
 #include "lodestone/spatial/bvh.h"
+#include "lodestone/spatial/drawn_attributes.h"
 
 namespace lodestone::measure {
 
 namespace {
 
-using detail::DrawnAttributes;
 using detail::Pair;
-using detail::Place;
+using detail::to_srgb;
+using spatial::DrawnAttributes;
+using spatial::Place;
 
 constexpr std::size_t kChunk = 4096;
 
@@ -195,7 +197,7 @@ Attributes compare(const DrawnAttributes& a, const DrawnAttributes& b, const Pai
   }
   if (a.has_look() || b.has_look()) {
     out.look = figure(pairs, task, [&](const Place& p, const Place& q) -> std::optional<double> {
-      return length(a.look(p) - b.look(q));
+      return length(to_srgb(a.light(p)) - to_srgb(b.light(q)));
     });
   }
   return out;

@@ -1,22 +1,16 @@
 // Pairs of points, one on each surface, at which attributes are compared.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "lodestone/base/task.h"
 #include "lodestone/spatial/bvh.h"
+#include "lodestone/spatial/drawn_attributes.h"
 
 namespace lodestone::measure::detail {
 
-/// A point of a surface: a triangle and its corners' weights.
-struct Place {
-  std::uint32_t triangle = 0;
-  double second = 0, third = 0;  ///< weights of the second and the third corner
-
-  std::array<double, 3> weights() const { return {1 - second - third, second, third}; }
-};
+using spatial::Place;
 
 struct Pair {
   Place from, to;

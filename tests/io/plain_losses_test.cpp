@@ -338,6 +338,39 @@ TEST_F(PlainLosses, textures_that_a_ply_cannot_hold_are_told) {
   EXPECT_EQ(count_of(told_, "no UVs"), 1U);
 }
 
+TEST_F(PlainLosses, normal_maps_go_into_mtl_and_gltf_and_a_ply_tells_that_it_has_none) {
+  Model model = make_model(triangle_with_uvs());
+  model.materials.resize(1);
+  model.materials[0].base_color_texture = png("color.png");
+  model.materials[0].normal_texture = png("normal.png", kPng + "2");
+  model.meshes[0].groups = {{0, ""}};
+  const Model back = there_and_back(model, "m.obj");
+  EXPECT_NE(text("m.mtl").find("map_Kd color.png\nnorm normal.png\n"), std::string::npos) << text("m.mtl");
+  ASSERT_NE(back.materials[0].normal_texture, nullptr);
+  EXPECT_EQ(back.materials[0].normal_texture->encoded, model.materials[0].normal_texture->encoded);
+  EXPECT_TRUE(back.warnings.empty());
+
+  there_and_back(model, "m.gltf");
+  const test::Json json = test::Json::parse(text("m.gltf"));
+  EXPECT_EQ(json["images"].size(), 2U);
+  EXPECT_EQ(json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"], 0);
+  EXPECT_EQ(json["materials"][0]["normalTexture"]["index"], 1);
+
+  there_and_back(model, "m.ply");
+  EXPECT_EQ(count_of(told_, "normal maps"), 1U);
+}
+
+TEST_F(PlainLosses, a_gltf_primitive_without_uvs_gets_no_normal_map) {
+  Model model = make_model(triangle());
+  model.materials.resize(1);
+  model.materials[0].normal_texture = png("normal.png");
+  model.meshes[0].groups = {{0, ""}};
+  there_and_back(model, "m.gltf");
+  const test::Json json = test::Json::parse(text("m.gltf"));
+  EXPECT_FALSE(
+      json["materials"][json["meshes"][0]["primitives"][0]["material"].get<std::size_t>()].contains("normalTexture"));
+}
+
 TEST_F(PlainLosses, names_of_textures_cannot_write_lines_or_leave_the_folder) {
   for (const std::string name : {"x\nend_header\n", "..", "../m.ply", "m.ply", "-o 1 1 1 y.png", "  "}) {
     for (const std::string file : {"inner/m.ply", "inner/m.obj"}) {

@@ -1,12 +1,13 @@
+#include "lodestone/spatial/drawn_attributes.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "lodestone/core/texture.h"
 #include "lodestone/math/triangle.h"
-#include "lodestone/measure/drawn_attributes_detail.h"
-#include "lodestone/measure/texture_detail.h"
 
-namespace lodestone::measure::detail {
+namespace lodestone::spatial {
 
 namespace {
 
@@ -102,17 +103,21 @@ DrawnAttributes::Spot DrawnAttributes::spot(std::uint32_t triangle) const {
   return spot;
 }
 
-std::optional<Vec3d> DrawnAttributes::normal(const Place& place) const {
+std::optional<Vec3d> DrawnAttributes::stream_normal(const Place& place) const {
   const Spot at = spot(place.triangle);
-  if (flat_[at.instance] == 0) {
-    if (const auto n = interpolated<3>(at.streams->normal, at.group, at.wedges, place)) {
-      const std::array<double, 16>& m = to_local_[at.instance].m;  // normals go by the transposed inverse
-      const Vec3d local{(*n)[0], (*n)[1], (*n)[2]};
-      const Vec3d world = normalized(Vec3d{dot(Vec3d{m[0], m[1], m[2]}, local), dot(Vec3d{m[4], m[5], m[6]}, local),
-                                           dot(Vec3d{m[8], m[9], m[10]}, local)});
-      if (world != Vec3d{} && is_finite(world)) return world;
-    }
-  }
+  if (flat_[at.instance] != 0) return std::nullopt;
+  const auto n = interpolated<3>(at.streams->normal, at.group, at.wedges, place);
+  if (!n) return std::nullopt;
+  const std::array<double, 16>& m = to_local_[at.instance].m;  // normals go by the transposed inverse
+  const Vec3d local{(*n)[0], (*n)[1], (*n)[2]};
+  const Vec3d world = normalized(Vec3d{dot(Vec3d{m[0], m[1], m[2]}, local), dot(Vec3d{m[4], m[5], m[6]}, local),
+                                       dot(Vec3d{m[8], m[9], m[10]}, local)});
+  if (world == Vec3d{} || !is_finite(world)) return std::nullopt;
+  return world;
+}
+
+std::optional<Vec3d> DrawnAttributes::normal(const Place& place) const {
+  if (const std::optional<Vec3d> own = stream_normal(place)) return own;
   const auto [a, b, c] = surface_.corners(place.triangle);
   const Vec3d face = normalized(scaled_normal(a, b, c));
   if (face == Vec3d{}) return std::nullopt;
@@ -141,7 +146,7 @@ std::optional<Vec3d> DrawnAttributes::color_at(const Spot& at, const Place& plac
 
 std::optional<Vec3d> DrawnAttributes::color(const Place& place) const { return color_at(spot(place.triangle), place); }
 
-Vec3d DrawnAttributes::look(const Place& place) const {
+Vec3d DrawnAttributes::light(const Place& place) const {
   const Spot at = spot(place.triangle);
   Vec3d light = color_at(at, place).value_or(Vec3d{1, 1, 1});
   const std::uint32_t m = at.group < at.mesh->groups.size() ? at.mesh->groups[at.group].material : kNone;
@@ -155,7 +160,7 @@ Vec3d DrawnAttributes::look(const Place& place) const {
       }
     }
   }
-  return to_srgb(light);
+  return light;
 }
 
 double DrawnAttributes::uv_diagonal(std::uint32_t set) const {
@@ -175,4 +180,4 @@ double DrawnAttributes::uv_diagonal(std::uint32_t set) const {
   return std::sqrt((high_u - low_u) * (high_u - low_u) + (high_v - low_v) * (high_v - low_v));
 }
 
-}  // namespace lodestone::measure::detail
+}  // namespace lodestone::spatial

@@ -1,15 +1,23 @@
 // What a model's surface carries at a point, as a viewer would draw it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "lodestone/core/model.h"
-#include "lodestone/measure/correspondence_detail.h"
 #include "lodestone/spatial/surface.h"
 
-namespace lodestone::measure::detail {
+namespace lodestone::spatial {
+
+/// A point of a surface: a triangle and its corners' weights.
+struct Place {
+  std::uint32_t triangle = 0;
+  double second = 0, third = 0;  ///< weights of the second and the third corner
+
+  std::array<double, 3> weights() const { return {1 - second - third, second, third}; }
+};
 
 /// Reads attributes at places of a flattened model, interpolated within the triangle. A value is nothing where the
 /// primitive does not have the stream or one of the corners' numbers is not finite. Model and surface must outlive it.
@@ -26,13 +34,14 @@ class DrawnAttributes {
 
   /// Unit, world space: the normal stream's; the face's where there is none. Nothing for a triangle without area.
   std::optional<Vec3d> normal(const Place& place) const;
+  /// The normal stream's alone; nothing where there is none.
+  std::optional<Vec3d> stream_normal(const Place& place) const;
   /// The origin at the image's top, whatever the model's convention. Without texture transforms.
   std::optional<Vec2d> uv(const Place& place, std::uint32_t set) const;
   /// RGB of COLOR_0, each cut to [0, 1].
   std::optional<Vec3d> color(const Place& place) const;
-  /// Base colour factor x texture x vertex colour, multiplied as light and given in sRGB, [0, 1]. A texture that is
-  /// missing counts as white.
-  Vec3d look(const Place& place) const;
+  /// Base colour factor x texture x vertex colour as light, [0, 1]. A texture that is missing counts as white.
+  Vec3d light(const Place& place) const;
 
   /// Diagonal of the box of all UVs drawn in this set; 0 without any.
   double uv_diagonal(std::uint32_t set) const;
@@ -63,4 +72,4 @@ class DrawnAttributes {
   bool has_normals_ = false, has_color_ = false, has_look_ = false;
 };
 
-}  // namespace lodestone::measure::detail
+}  // namespace lodestone::spatial
