@@ -14,17 +14,18 @@
 
 namespace lodestone::app {
 
-std::vector<OptionSpec> bake_options() {
-  return {{"--texture-size",
-           "",
-           "N",
-           "",
-           "texels",
-           "make an atlas, and bake base colour and normal map of the input into textures of N x N (16 to 16,384; "
-           "without: normals and colours of vertices)",
-           {},
-           Completion::none},
-          {"--no-attributes", "", "", "", "", "positions alone", {}, Completion::none}};
+OptionGroup baked_group() {
+  return {"What comes over from the input",
+          {{"--texture-size",
+            "",
+            "N",
+            "",
+            "texels",
+            "make an atlas, and bake base colour and normal map of the input into textures of N x N (16 to 16,384; "
+            "without: normals and colours of vertices)",
+            {},
+            Completion::none},
+           {"--no-attributes", "", "", "", "", "positions alone", {}, Completion::none}}};
 }
 
 Result<BakePlan> bake_plan(const Arguments& arguments) {
@@ -32,7 +33,8 @@ Result<BakePlan> bake_plan(const Arguments& arguments) {
   plan.attributes = !arguments.has("--no-attributes");
   if (!arguments.has("--texture-size")) return plan;
   if (!plan.attributes) {
-    return fail(ErrorCode::bad_argument, "--texture-size and --no-attributes can't be given together", {}, "choose one");
+    return fail(ErrorCode::bad_argument, "--texture-size and --no-attributes can't be given together", {},
+                "choose one");
   }
   const Result<std::uint64_t> size = arguments.count("--texture-size", 16, 16'384);
   if (!size) return fail(size.error());

@@ -16,7 +16,7 @@
 namespace lodestone::app {
 
 /// --texture-size and --no-attributes.
-std::vector<OptionSpec> bake_options();
+OptionGroup baked_group();
 
 struct BakePlan {
   bool attributes = true;

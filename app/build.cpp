@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/bake_run.h"
 #include "app/build_plan.h"
 #include "app/build_report.h"
 #include "app/input.h"
@@ -82,8 +83,16 @@ Result<chain::LadderResult> make_levels(Model model, const BuildPlan& plan, cons
   if (!plan.voxel) return chain::build_ladder(std::move(model), options, task);
   std::vector<std::string> warnings;
   Model one = io::flattened(std::move(model), warnings);
-  Result<chain::LadderResult> result = chain::build_voxel_ladder(
-      std::move(one), options, plan.voxel->voxel, plan.voxel->then_collapse, plan.voxel->resolution, warnings, task);
+  const Result<AttributeSource> source = AttributeSource::create(one, plan.voxel->bake, warnings, task.part(0.1));
+  if (!source) return fail(source.error());
+  Result<chain::LadderResult> result =
+      chain::build_voxel_ladder(std::move(one), options, plan.voxel->voxel, plan.voxel->then_collapse,
+                                plan.voxel->resolution, warnings, task.part(0.7));
+  if (!result) return result;
+  for (std::size_t level = 1; level < result->ladder.levels.size(); ++level) {
+    const Result<void> added = source->add_to(result->ladder.levels[level].model, level, task);
+    if (!added) return fail(added.error());
+  }
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
   for (const std::string& warning : warnings) console.note(fmt::format("{}: {}", report.input, warning));
   return result;

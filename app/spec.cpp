@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/attributes.h"
+#include "app/bake_run.h"
 #include "app/influence.h"
 #include "app/render_options.h"
 #include "app/render_sheet.h"
@@ -93,14 +94,16 @@ VerbSpec remesh_spec() {
       "remesh",
       "Makes a new closed surface of even triangles from a model, by way of voxels.",
       one_model(),
-      {remesh_target_group(), solid_group(), level_group(), length_group(), volume_group(), scan_group(false),
-       measuring_group(kBuildSamples), output_group(true), general_group()},
+      {remesh_target_group(), solid_group(), level_group(), baked_group(), length_group(), volume_group(),
+       scan_group(false), measuring_group(kBuildSamples), output_group(true), general_group()},
       {{"lod remesh statue.ply -o even.ply", "128 voxels along the longest side"},
        {"lod remesh statue.glb -o fine.glb --resolution 200", "a finer one"},
        {"lod remesh statue.ply -o few.ply --triangles 2000 --then-collapse",
         "closed whatever the input, and 2,000 well placed triangles"}},
       "The model is cut into voxels once, K times finer than asked; their shares in the larger ones are contoured at "
-      "a half (Marching Cubes), and the vertices moved onto the input. Attributes are not carried over.",
+      "a half (Marching Cubes), and the vertices moved onto the input. Normals and colours that the input has come "
+      "along, "
+      "as colours of vertices or, with --texture-size, in textures.",
       run_remesh};
 }
 

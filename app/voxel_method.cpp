@@ -13,8 +13,7 @@ OptionGroup voxel_method_group() {
                       "M",
                       "edge-collapse",
                       "",
-                      "edge-collapse, or voxel: each level a new closed surface from one solid, whatever the input; "
-                      "attributes are not carried over",
+                      "edge-collapse, or voxel: each level a new closed surface from one solid, whatever the input",
                       {"edge-collapse", "voxel"},
                       Completion::choices},
                      {"--resolution",
@@ -30,6 +29,7 @@ OptionGroup voxel_method_group() {
     if (option.name != "--close") group.options.push_back(option);
   }
   for (const OptionSpec& option : level_group().options) group.options.push_back(option);
+  for (const OptionSpec& option : baked_group().options) group.options.push_back(option);
   return group;
 }
 
@@ -56,6 +56,9 @@ Result<std::optional<VoxelMethod>> voxel_method(const Arguments& arguments) {
   const Result<chain::VoxelOptions> options = voxel_options(arguments, {}, {});
   if (!options) return fail(options.error());
   method.voxel = *options;
+  const Result<BakePlan> bake = bake_plan(arguments);
+  if (!bake) return fail(bake.error());
+  method.bake = *bake;
   return std::optional<VoxelMethod>(method);
 }
 

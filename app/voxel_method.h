@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/bake_run.h"
 #include "app/command_line.h"
 #include "app/shared_options.h"
 #include "app/spec.h"
@@ -20,6 +21,7 @@ OptionGroup voxel_method_group();
 /// Nothing where levels are made by edge collapse. Errors: bad_argument (options of one method with the other).
 struct VoxelMethod {
   chain::VoxelOptions voxel;
+  BakePlan bake;
   bool then_collapse = false;
   std::uint32_t resolution = 0;  ///< 0 = by the targets
 };
