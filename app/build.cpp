@@ -77,9 +77,34 @@ Result<chain::LadderOptions> prepare_job(const BuildPlan& plan, Model& model, Bu
   return options;
 }
 
+// In one file all levels choose from the original's materials, and its texture coordinates say where the origin is.
+void share_materials(Ladder& ladder) {
+  std::vector<Material>& all = ladder.original.materials;
+  for (std::size_t i = 1; i < ladder.levels.size(); ++i) {
+    Model& model = ladder.levels[i].model;
+    if (model.materials.empty()) continue;
+    const auto first = static_cast<std::uint32_t>(all.size());
+    all.insert(all.end(), model.materials.begin(), model.materials.end());
+    for (Mesh& mesh : model.meshes) {
+      for (FaceGroup& group : mesh.groups) group.material += group.material == kNone ? 0 : first;
+      if (model.uv_origin_top == ladder.original.uv_origin_top) continue;
+      for (AttributeStream& stream : mesh.attributes) {
+        if (stream.semantic != Semantic::uv) continue;
+        auto& uv = std::get<std::vector<float>>(stream.values);
+        for (std::size_t k = 1; k < uv.size(); k += stream.components) uv[k] = 1 - uv[k];
+      }
+    }
+    model.uv_origin_top = ladder.original.uv_origin_top;
+  }
+  for (std::size_t i = 1; i < ladder.levels.size(); ++i) {
+    if (!ladder.levels[i].model.materials.empty()) ladder.levels[i].model.materials = all;
+  }
+}
+
 // By voxels the original is one mesh, as each level is.
 Result<chain::LadderResult> make_levels(Model model, const BuildPlan& plan, const chain::LadderOptions& options,
-                                        BuildReport& report, const Console& console, const Task& task) {
+                                        bool job_is_one_file, BuildReport& report, const Console& console,
+                                        const Task& task) {
   if (!plan.voxel) return chain::build_ladder(std::move(model), options, task);
   std::vector<std::string> warnings;
   Model one = io::flattened(std::move(model), warnings);
@@ -93,6 +118,7 @@ Result<chain::LadderResult> make_levels(Model model, const BuildPlan& plan, cons
     const Result<void> added = source->add_to(result->ladder.levels[level].model, level, task);
     if (!added) return fail(added.error());
   }
+  if (job_is_one_file) share_materials(result->ladder);
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
   for (const std::string& warning : warnings) console.note(fmt::format("{}: {}", report.input, warning));
   return result;
@@ -130,7 +156,8 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   report.read_seconds = watch.lap();
   const Result<chain::LadderOptions> options = prepare_job(plan, *model, report, warnings, console, task);
   if (!options) return fail(options.error());
-  const Result<chain::LadderResult> result = make_levels(std::move(*model), plan, *options, report, console,
+  const bool one_file = job.output.filename().string().find("{level}") == std::string::npos;
+  const Result<chain::LadderResult> result = make_levels(std::move(*model), plan, *options, one_file, report, console,
                                                          task.part(plan.report ? 0.5 : 0.8, "making levels"));
   if (!result) return fail(result.error());
   report.levels_seconds = result->simplify_seconds;

@@ -11,13 +11,7 @@ namespace {
 Json fresh_mesh(const Mesh& mesh) {
   Json out = Json::object();
   if (!mesh.name.empty()) out["name"] = mesh.name;
-  out["primitives"] = Json::array();
-  for (std::size_t g = 0; g < std::max<std::size_t>(1, mesh.groups.size()); ++g) {
-    Json primitive = Json::object();
-    if (g < mesh.groups.size() && mesh.groups[g].material != kNone) primitive["material"] = mesh.groups[g].material;
-    if (g < mesh.groups.size() && !mesh.groups[g].name.empty()) primitive["extras"] = {{"name", mesh.groups[g].name}};
-    out["primitives"].push_back(std::move(primitive));
-  }
+  out["primitives"] = fresh_primitives(mesh);
   return out;
 }
 
@@ -57,6 +51,17 @@ void add_root(const Mat4d& transform, Json& json, Json& roots) {
 }
 
 }  // namespace
+
+Json fresh_primitives(const Mesh& mesh) {
+  Json primitives = Json::array();
+  for (std::size_t g = 0; g < std::max<std::size_t>(1, mesh.groups.size()); ++g) {
+    Json primitive = Json::object();
+    if (g < mesh.groups.size() && mesh.groups[g].material != kNone) primitive["material"] = mesh.groups[g].material;
+    if (g < mesh.groups.size() && !mesh.groups[g].name.empty()) primitive["extras"] = {{"name", mesh.groups[g].name}};
+    primitives.push_back(std::move(primitive));
+  }
+  return primitives;
+}
 
 Json make_fresh_document(const Model& model) {
   Json json = {{"asset", {{"version", "2.0"}, {"generator", "Lodestone"}}}, {"scene", 0}};

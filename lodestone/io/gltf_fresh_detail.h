@@ -8,6 +8,9 @@
 namespace lodestone::io {
 
 /// Scene, a node an instance (its index is the instance's), meshes whose primitives still lack geometry (one a face
+/// The primitives of a mesh, one a group, without geometry.
+Json fresh_primitives(const Mesh& mesh);
+
 /// group, so that primitive g is group g), and materials with their textures in the pack.
 Json make_fresh_document(const Model& model);
 void add_fresh_materials(const Model& model, Json& json, GltfPack& pack);

@@ -141,7 +141,9 @@ Json pack_primitives(Writer& w, std::size_t level, const Mesh& mesh, std::size_t
   GroupIndexer groups(mesh);
   Json out = Json::array();
   std::size_t group = 0;
-  for (const Json& source : array_member(w.source_meshes[index], "primitives")) {
+  // Without a document each level says by itself which materials it has: one made anew may have others.
+  const Json own = w.document == nullptr ? fresh_primitives(mesh) : Json::array();
+  for (const Json& source : w.document == nullptr ? own : array_member(w.source_meshes[index], "primitives")) {
     if (!is_triangle_primitive(source)) {
       out.push_back(source);
       continue;
