@@ -14,6 +14,7 @@ from control_test import Control  # noqa: F401
 from help_test import Help, Shells  # noqa: F401
 from render_test import Render, Sheet  # noqa: F401
 from report_test import Report  # noqa: F401
+from volume_test import Volumes  # noqa: F401
 from voxel_test import Voxels  # noqa: F401
 from result_test import Json, SameBytes, Samples  # noqa: F401
 from side_files_test import SideFiles  # noqa: F401

@@ -40,6 +40,22 @@ class Voxels(Scratch):
             self.assertEqual(self.json("info", "v.glb")["levels"], 3)
         self.assert_error(self.lod("build", "statue.ply", "-o", "w.glb", "--keep-thin", code=2), "--method voxel")
 
+    def test_attributes(self):
+        self.lod("sample", "terrain", "--triangles", "2000", "-o", "land.glb")
+        self.json("remesh", "land.glb", "-o", "vertices.glb", "--fill", "shrinkwrap", "--resolution", "40")
+        self.json("remesh", "land.glb", "-o", "textures.glb", "--fill", "shrinkwrap", "--resolution", "40",
+                  "--texture-size", "128")
+        names = {a["name"] for a in self.json("info", "textures.glb")["attributes"]}
+        self.assertTrue({"NORMAL", "TEXCOORD_0"} <= names, names)
+        self.json("remesh", "land.glb", "-o", "bare.glb", "--fill", "shrinkwrap", "--resolution", "40", "--no-attributes")
+        self.assertEqual(self.json("info", "bare.glb")["attributes"], [])
+        report = self.json("build", "land.glb", "-o", "levels.glb", "--method", "voxel", "--fill", "shrinkwrap",
+                           "--triangles", "4000,3000", "--then-collapse", "--texture-size", "256")
+        self.assertEqual(len(report["levels"]), 3)
+        self.lod("build", "land.glb", "-o", "a_LOD{level}.obj", "--method", "voxel", "--fill", "shrinkwrap",
+                 "--triangles", "4000", "--then-collapse", "--texture-size", "256")
+        self.assertIn("a_LOD1.mtl", self.files())
+
     def test_boolean(self):
         self.lod("sample", "sphere", "--level", "3", "-o", "ball.ply")
         report = self.json("boolean", "ball.ply", "difference", "statue.ply", "d.ply", "--resolution", "48")
