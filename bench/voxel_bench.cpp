@@ -56,8 +56,8 @@ ScalarVolume<std::uint8_t> gyroid(std::uint32_t n) {
   out.values.resize(out.grid.count());
   std::vector<double> s(n), c(n);
   for (std::uint32_t i = 0; i < n; ++i) {
-    s[i] = std::sin(i * 0.0147);
-    c[i] = std::cos(i * 0.0147);
+    s[i] = std::sin(i * 0.00726);
+    c[i] = std::cos(i * 0.00726);
   }
   for (std::uint32_t z = 0; z < n; ++z) {
     for (std::uint32_t y = 0; y < n; ++y) {
