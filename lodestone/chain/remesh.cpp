@@ -36,14 +36,15 @@ Result<void> check(const RemeshOptions& options) {
 }
 
 // How fine the surface must be that is collapsed: so that the target's error is not that of the voxels.
-constexpr std::size_t kStartTriangles = 8;
+constexpr std::size_t kStartTriangles = 16, kLeastStart = 200'000, kMostStart = 4'000'000;
 constexpr double kStartError = 3;
 
 // The finest resolution that levels will be asked for.
 Result<std::uint32_t> finest_for(const Model& model, const RemeshOptions& options, const Task& task) {
   if (options.resolution > 0) return options.resolution;
   if (options.triangles > 0) {
-    const std::size_t wanted = options.triangles * (options.then_collapse ? kStartTriangles : 1);
+    const std::size_t start = std::clamp(options.triangles * kStartTriangles, kLeastStart, kMostStart);
+    const std::size_t wanted = options.then_collapse ? std::max(start, options.triangles) : options.triangles;
     const Result<std::uint32_t> predicted = detail::predict_resolution(model, options.voxel, wanted, task);
     if (!predicted) return predicted;
     return std::max<std::uint32_t>(8, *predicted + (options.then_collapse ? 0 : *predicted / 8));
