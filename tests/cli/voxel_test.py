@@ -49,11 +49,11 @@ class Voxels(Scratch):
         self.assertTrue({"NORMAL", "TEXCOORD_0"} <= names, names)
         self.json("remesh", "land.glb", "-o", "bare.glb", "--fill", "shrinkwrap", "--resolution", "40", "--no-attributes")
         self.assertEqual(self.json("info", "bare.glb")["attributes"], [])
-        report = self.json("build", "land.glb", "-o", "levels.glb", "--method", "voxel", "--fill", "shrinkwrap",
-                           "--triangles", "4000,3000", "--then-collapse", "--texture-size", "256")
+        report = self.json("build", "statue.ply", "-o", "levels.glb", "--method", "voxel", "--then-collapse",
+                           "--resolution", "60", "--triangles", "3000,1000", "--texture-size", "256")
         self.assertEqual(len(report["levels"]), 3)
-        self.lod("build", "land.glb", "-o", "a_LOD{level}.obj", "--method", "voxel", "--fill", "shrinkwrap",
-                 "--triangles", "4000", "--then-collapse", "--texture-size", "256")
+        self.lod("build", "statue.ply", "-o", "a_LOD{level}.obj", "--method", "voxel", "--then-collapse",
+                 "--resolution", "60", "--triangles", "1000", "--texture-size", "256")
         self.assertIn("a_LOD1.mtl", self.files())
 
     def test_boolean(self):
