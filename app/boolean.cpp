@@ -1,12 +1,10 @@
 #include <fmt/format.h>
 
 #include "app/input.h"
-#include "app/json.h"
 #include "app/shared_options.h"
 #include "app/verbs.h"
 #include "app/voxel_options.h"
 #include "app/voxel_run.h"
-#include "lodestone/base/stopwatch.h"
 #include "lodestone/chain/boolean.h"
 
 namespace lodestone::app {
@@ -61,6 +59,7 @@ Result<ExitCode> run_boolean(const Arguments& arguments, Console& console) {
   VoxelRequest request;
   request.output = asked->output;
   request.compression = compression_of(arguments);
+  request.json = arguments.has("--json");
   const std::vector<std::filesystem::path> paths(asked->inputs.begin(), asked->inputs.end());
   if (const Result<void> ok = check_output(request.output, paths, request.compression); !ok) return fail(ok.error());
   const Result<std::uint32_t> resolution = resolution_of(arguments);
@@ -93,25 +92,14 @@ Result<ExitCode> run_boolean(const Arguments& arguments, Console& console) {
   options.voxel = *voxel;
   const Result<chain::BooleanResult> result = chain::boolean(models, options, console.task().part(0.7, "combining"));
   if (!result) return fail(result.error());
-  report.resolution = result->resolution;
+  add_solid(report, result->fill, result->resolution, result->voxels_inside);
+  add_seconds(report, result->seconds);
   report.level_resolution = *resolution;
-  report.voxels_inside = result->voxels_inside;
-  report.fill = name_of(result->fill.fill);
-  report.fill_reason = result->fill.reason;
-  report.triangles = drawn_triangles(result->model);
   report.method = "voxels";
-  report.prepare_seconds = result->seconds.prepare;
-  report.voxelize_seconds = result->seconds.voxelize;
-  report.resample_seconds = result->seconds.resample;
-  report.isosurface_seconds = result->seconds.isosurface;
   tell(report, result->warnings, console);
-  watch.lap();
-  if (const Result<void> written = write_surface(result->model, request, report, console); !written) {
-    return fail(written.error());
+  if (const Result<void> done = finish(result->model, request, watch, report, console); !done) {
+    return fail(done.error());
   }
-  report.write_seconds = watch.lap();
-  report.total_seconds = watch.total();
-  console.result(arguments.has("--json") ? to_json(report) : table_of(report));
   return ExitCode::done;
 }
 

@@ -103,22 +103,21 @@ void share_materials(Ladder& ladder) {
 
 // By voxels the original is one mesh, as each level is.
 Result<chain::LadderResult> make_levels(Model model, const BuildPlan& plan, const chain::LadderOptions& options,
-                                        bool job_is_one_file, BuildReport& report, const Console& console,
-                                        const Task& task) {
+                                        bool one_file, BuildReport& report, const Console& console, const Task& task) {
   if (!plan.voxel) return chain::build_ladder(std::move(model), options, task);
   std::vector<std::string> warnings;
   Model one = io::flattened(std::move(model), warnings);
   const Result<AttributeSource> source = AttributeSource::create(one, plan.voxel->bake, warnings, task.part(0.1));
   if (!source) return fail(source.error());
   Result<chain::LadderResult> result =
-      chain::build_voxel_ladder(std::move(one), options, plan.voxel->voxel, plan.voxel->then_collapse,
-                                plan.voxel->resolution, warnings, task.part(0.7));
+      chain::build_voxel_ladder(std::move(one), options, plan.voxel->ladder, task.part(0.7));
   if (!result) return result;
+  warnings.insert(warnings.end(), result->warnings.begin(), result->warnings.end());
   for (std::size_t level = 1; level < result->ladder.levels.size(); ++level) {
     const Result<void> added = source->add_to(result->ladder.levels[level].model, level, task);
     if (!added) return fail(added.error());
   }
-  if (job_is_one_file) share_materials(result->ladder);
+  if (one_file) share_materials(result->ladder);
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
   for (const std::string& warning : warnings) console.note(fmt::format("{}: {}", report.input, warning));
   return result;

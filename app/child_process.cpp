@@ -79,7 +79,9 @@ namespace {
 
 // Collects the report until the child ends, kills it when it must stop.
 ChildOutcome wait_for(pid_t child, int report, std::chrono::seconds wall, const Task& task) {
+  constexpr std::size_t kMostSaid = std::size_t{1} << 26;  // the names and places of a hundred thousand slices
   ChildOutcome out;
+  std::string said;
   const auto deadline = std::chrono::steady_clock::now() + wall;
   while (true) {
     pollfd wanted{report, POLLIN, 0};
@@ -95,8 +97,9 @@ ChildOutcome wait_for(pid_t child, int report, std::chrono::seconds wall, const 
     const ssize_t got = ::read(report, buffer, sizeof buffer);
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) break;
-    if (out.report.size() < (std::size_t{1} << 20)) out.report.append(buffer, static_cast<std::size_t>(got));
+    if (said.size() < kMostSaid) said.append(buffer, static_cast<std::size_t>(got));
   }
+  out.report = parse_child_report(said);
   while (::waitpid(child, &out.status, 0) < 0 && errno == EINTR) {
   }
   return out;
@@ -135,14 +138,6 @@ std::string ending_of(const ChildOutcome& outcome, const ChildLimits& limits) {
   }
   if (signalled) return fmt::format("the reader of this format crashed (signal {})", number);
   return fmt::format("the reader of this format ended with code {}", WEXITSTATUS(outcome.status));
-}
-
-void report_line(std::string_view key, std::string value) {
-  for (char& c : value) {
-    if (c == '\n' || c == '\r') c = ' ';
-  }
-  const std::string line = fmt::format("{} {}\n", key, value);
-  if (::write(kReportDescriptor, line.data(), line.size()) < 0) std::_Exit(1);
 }
 
 }  // namespace lodestone::app

@@ -7,13 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "app/child_report.h"
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
 
 namespace lodestone::app {
-
-/// Where a child finds the pipe for what it has to say.
-inline constexpr int kReportDescriptor = 3;
 
 struct ChildLimits {
   std::uint64_t memory_bytes;  ///< of addresses; also of any file that it writes
@@ -24,8 +22,8 @@ struct ChildLimits {
 ChildLimits limits_for(std::uint64_t file_bytes);
 
 struct ChildOutcome {
-  std::string report;  ///< what the child wrote to kReportDescriptor
-  int status = 0;      ///< as waitpid tells it
+  ChildReport report;
+  int status = 0;  ///< as waitpid tells it
   enum class End { exited, timed_out, cancelled } end = End::exited;
 };
 
@@ -36,9 +34,6 @@ Result<ChildOutcome> run_child(const std::filesystem::path& program, std::vector
 
 /// Why a child that did not finish its report ended, in plain words.
 std::string ending_of(const ChildOutcome& outcome, const ChildLimits& limits);
-
-/// Writes "key value" as a line to the report; line ends in the value become spaces. For children.
-void report_line(std::string_view key, std::string value);
 
 /// A private folder that goes with all that is in it.
 class TemporaryFolder {

@@ -106,12 +106,9 @@ Result<std::uint64_t> Arguments::count(std::string_view option, std::uint64_t le
 
 Result<double> Arguments::positive(std::string_view option) const {
   const std::string word = text(option);
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value) || value <= 0) {
-    return bad_value(option, word, "it must be a number above 0");
-  }
-  return value;
+  const std::optional<double> value = parse_number(word);
+  if (!value || *value <= 0) return bad_value(option, word, "it must be a number above 0");
+  return *value;
 }
 
 Result<std::vector<std::size_t>> Arguments::count_list(std::string_view option) const {

@@ -16,8 +16,9 @@ namespace {
 constexpr const char* kFileRemedy = "a line is X Y Z RADIUS WEIGHT, or X Y Z RADIUS lock";
 
 bool read_number(std::string_view text, double& out) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-  return error == std::errc{} && end == text.data() + text.size() && std::isfinite(out);
+  const std::optional<double> number = parse_number(text);
+  out = number.value_or(0);
+  return number.has_value();
 }
 
 std::vector<std::string_view> words_of(std::string_view line) {

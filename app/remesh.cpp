@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include "app/bake_run.h"
-#include "app/json.h"
 #include "app/shared_options.h"
 #include "app/verbs.h"
 #include "app/voxel_options.h"
 #include "app/voxel_run.h"
-#include "lodestone/base/stopwatch.h"
 
 namespace lodestone::app {
 
@@ -48,24 +46,6 @@ Result<chain::RemeshOptions> remesh_options(const Arguments& arguments, const Le
   return options;
 }
 
-void add_result(const chain::RemeshResult& result, VoxelReport& report) {
-  report.resolution = result.resolution;
-  report.level_resolution = result.level_resolution;
-  report.voxels_inside = result.voxels_inside;
-  report.fill = name_of(result.fill.fill);
-  report.fill_reason = result.fill.reason;
-  report.triangles = result.level.triangles;
-  if (result.measured) report.error = result.level.error;
-  report.method = result.level.method;
-  report.shortfall = result.shortfall;
-  report.prepare_seconds = result.seconds.prepare;
-  report.voxelize_seconds = result.seconds.voxelize;
-  report.resample_seconds = result.seconds.resample;
-  report.isosurface_seconds = result.seconds.isosurface;
-  report.collapse_seconds = result.seconds.collapse;
-  report.measure_seconds = result.seconds.measure;
-}
-
 }  // namespace
 
 Result<ExitCode> run_remesh(const Arguments& arguments, Console& console) {
@@ -86,20 +66,20 @@ Result<ExitCode> run_remesh(const Arguments& arguments, Console& console) {
   if (!options) return fail(options.error());
   Result<chain::RemeshResult> result = chain::remesh(*model, *options, console.task().part(0.8, "remeshing"));
   if (!result) return fail(with_place(result.error(), report.input));
-  add_result(*result, report);
+  add_solid(report, result->fill, result->resolution, result->voxels_inside);
+  add_seconds(report, result->seconds);
+  report.level_resolution = result->level_resolution;
+  report.method = result->level.method;
+  report.shortfall = result->shortfall;
+  if (result->measured) report.error = result->level.error;
   const Result<AttributeSource> source = AttributeSource::create(*model, *bake, result->warnings, console.task());
   if (!source) return fail(source.error());
   if (const Result<void> added = source->add_to(result->level.model, 0, console.task()); !added) {
     return fail(with_place(added.error(), report.input));
   }
   tell(report, result->warnings, console);
-  watch.lap();
-  if (const Result<void> written = write_surface(result->level.model, *request, report, console); !written) {
-    return fail(written.error());
-  }
-  report.write_seconds = watch.lap();
-  report.total_seconds = watch.total();
-  console.result(arguments.has("--json") ? to_json(report) : table_of(report));
+  const Result<void> done = finish(result->level.model, *request, watch, report, console);
+  if (!done) return fail(done.error());
   if (report.shortfall.empty()) return ExitCode::done;
   console.shortfall(fmt::format("{}: {}", report.input, report.shortfall));
   return ExitCode::fell_short;

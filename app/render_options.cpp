@@ -1,4 +1,5 @@
 #include "app/render_options.h"
+#include "lodestone/base/units.h"
 
 #include <fmt/format.h>
 
@@ -28,10 +29,9 @@ Result<std::vector<double>> numbers(const Arguments& arguments, const char* opti
   const std::string text = arguments.text(option);
   std::vector<double> values;
   for (const std::string& word : split_commas(text)) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) break;
-    values.push_back(value);
+    const std::optional<double> value = parse_number(word);
+    if (!value) break;
+    values.push_back(*value);
   }
   if (values.size() == count && split_commas(text).size() == count) return values;
   return fail(ErrorCode::bad_argument,

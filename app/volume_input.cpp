@@ -10,6 +10,7 @@
 #include "app/volume_report.h"
 #include "lodestone/base/file.h"
 #include "lodestone/base/mapped_file.h"
+#include "lodestone/base/units.h"
 #include "lodestone/io/points.h"
 
 namespace lodestone::app {
@@ -113,17 +114,11 @@ tl::unexpected<Error> bad_value(const char* option, const std::string& text, con
 Result<Vec3d> triple(const Arguments& arguments, const char* option) {
   const std::string text = arguments.text(option);
   Vec3d out;
-  std::size_t at = 0;
+  const std::vector<std::string> words = split_commas(text);
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t end = std::min(text.find(',', at), text.size());
-    const std::string word = text.substr(at, end - at);
-    char* rest = nullptr;
-    out[k] = std::strtod(word.c_str(), &rest);
-    const bool last = k == 2;
-    if (word.empty() || *rest != '\0' || !std::isfinite(out[k]) || (end == text.size()) != last) {
-      return bad_value(option, text, "use three numbers, such as 256,256,128");
-    }
-    at = end + 1;
+    const std::optional<double> number = words.size() == 3 ? parse_number(words[k]) : std::nullopt;
+    if (!number) return bad_value(option, text, "use three numbers, such as 256,256,128");
+    out[k] = *number;
   }
   return out;
 }
@@ -160,13 +155,13 @@ Result<void> read_smoothing(const Arguments& arguments, chain::VolumeSurfaceOpti
   options.trilinear = arguments.has("--trilinear");
   if (!arguments.has("--smooth")) return {};
   const std::string text = arguments.text("--smooth");
-  char* rest = nullptr;
-  options.smooth = std::strtod(text.c_str(), &rest);
-  const std::string unit = rest;
-  if (rest == text.c_str() || !(options.smooth > 0) || options.smooth > 1000 || (!unit.empty() && unit != "mm")) {
+  options.smooth_in_voxels = !text.ends_with("mm");
+  const std::optional<double> radius =
+      parse_number(std::string_view(text).substr(0, text.size() - (options.smooth_in_voxels ? 0 : 2)));
+  if (!radius || !(*radius > 0) || *radius > 1000) {
     return bad_value("--smooth", text, "use voxels, such as 1.5, or millimetres, such as 2mm");
   }
-  options.smooth_in_voxels = unit.empty();
+  options.smooth = *radius;
   return {};
 }
 
@@ -226,14 +221,14 @@ Result<ScannedVolume> read_in_child(const fs::path& path, const VolumeRequest& r
   const Result<ChildOutcome> outcome = run_child(*program, volume_words(path, values, request.read), limits, task);
   if (!outcome) return fail(outcome.error());
   if (outcome->end == ChildOutcome::End::cancelled) return cancelled_error("reading");
-  VolumeSaid said = parse_volume_report(outcome->report);
-  if (said.failed) return fail(std::move(said.error));
-  if (!said.done || outcome->status != 0) {
+  if (outcome->report.failed) return fail(outcome->report.error);
+  if (!outcome->report.done || outcome->status != 0) {
     return fail(ErrorCode::bad_format, ending_of(*outcome, limits), path.string(),
                 "convert it to NRRD or MetaImage with the program that made it");
   }
   const Result<MappedFile> mapped = map_file(values);
   if (!mapped) return fail(mapped.error());
+  SaidVolume said = volume_of(outcome->report);
   ScannedVolume volume;
   volume.header = std::move(said.header);
   if (mapped->bytes.size() != volume.header.grid.count() * io::size_of(said.type)) {
@@ -253,13 +248,12 @@ Result<VolumeRequest> volume_request(const Arguments& arguments) {
   request.asked = arguments.has("--iso") || arguments.has("--raw") || request.surface.labels;
   if (arguments.has("--iso")) {
     const std::string text = arguments.text("--iso");
-    char* rest = nullptr;
-    const double iso = std::strtod(text.c_str(), &rest);
-    if (rest == text.c_str() || *rest != '\0' || !std::isfinite(iso)) return bad_value("--iso", text, "use a number");
+    const std::optional<double> iso = parse_number(text);
+    if (!iso) return bad_value("--iso", text, "use a number");
     if (request.surface.labels) {
       return fail(ErrorCode::bad_argument, "--iso and --labels exclude each other", {}, "choose one");
     }
-    request.surface.iso = iso;
+    request.surface.iso = *iso;
   }
   if (arguments.has("--raw")) {
     Result<io::RawLayout> raw = raw_layout(arguments);

@@ -4,32 +4,15 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <sstream>
+#include <span>
 
 namespace lodestone::app {
 
 namespace {
 
-std::string one_line(std::string value) {
-  std::replace(value.begin(), value.end(), '\n', ' ');
-  std::replace(value.begin(), value.end(), '\r', ' ');
-  return value;
-}
+std::string list(std::span<const double> values) { return fmt::format("{}", fmt::join(values, " ")); }
 
-std::string line(std::string_view key, const std::string& value) {
-  return fmt::format("{} {}\n", key, one_line(value));
-}
-
-std::string list(const double* values, std::size_t count) {
-  return fmt::format("{}", fmt::join(values, values + count, " "));
-}
-
-std::vector<double> numbers(const std::string& text) {
-  std::istringstream words(text);
-  std::vector<double> out;
-  for (std::string word; words >> word;) out.push_back(std::strtod(word.c_str(), nullptr));
-  return out;
-}
+std::string list(const Vec3d& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
 Vec3d vector(const std::vector<double>& v) { return v.size() == 3 ? Vec3d{v[0], v[1], v[2]} : Vec3d{}; }
 
@@ -67,59 +50,36 @@ Result<VolumeWords> parse_volume_words(const std::vector<std::string>& words) {
   return out;
 }
 
-std::string report_of(const VolumeHeader& header, io::VoxelType type) {
+void say_volume(const VolumeHeader& header, io::VoxelType type) {
   const VoxelGrid& grid = header.grid;
-  std::string out = line("size", fmt::format("{} {} {}", grid.size[0], grid.size[1], grid.size[2]));
-  out += line("origin", fmt::format("{} {} {}", grid.origin.x, grid.origin.y, grid.origin.z));
-  out += line("spacing", fmt::format("{} {} {}", grid.spacing.x, grid.spacing.y, grid.spacing.z));
-  out += line("to_world", list(header.to_world.m.data(), 16));
-  out += line("patient_axes", header.patient_axes ? "1" : "0");
-  out += line("unit", fmt::format("{}", header.meters_per_unit));
-  if (!header.slice_positions.empty()) {
-    out += line("positions", list(header.slice_positions.data(), header.slice_positions.size()));
-  }
-  for (const std::filesystem::path& file : header.files) out += line("file", file.string());
-  for (const std::string& warning : header.warnings) out += line("warning", warning);
-  return out + line("type", fmt::format("{}", static_cast<int>(type)));
+  say("size", fmt::format("{} {} {}", grid.size[0], grid.size[1], grid.size[2]));
+  say("origin", list(grid.origin));
+  say("spacing", list(grid.spacing));
+  say("to_world", list(header.to_world.m));
+  say("patient_axes", header.patient_axes ? "1" : "0");
+  say("unit", fmt::format("{}", header.meters_per_unit));
+  if (!header.slice_positions.empty()) say("positions", list(header.slice_positions));
+  for (const std::filesystem::path& file : header.files) say("file", file.string());
+  for (const std::string& warning : header.warnings) say("warning", warning);
+  say("type", fmt::format("{}", static_cast<int>(type)));
 }
 
-std::string report_of(const Error& error) {
-  return line("code", fmt::format("{}", static_cast<int>(error.code))) + line("what", error.what) +
-         line("where", error.where) + line("remedy", error.remedy) + line("failed", "");
-}
-
-VolumeSaid parse_volume_report(const std::string& text) {
-  VolumeSaid said;
-  std::istringstream lines(text);
-  for (std::string row; std::getline(lines, row);) {
-    const std::size_t space = std::min(row.find(' '), row.size());
-    const std::string key = row.substr(0, space);
-    const std::string value = row.substr(std::min(space + 1, row.size()));
-    if (key == "size") {
-      const std::vector<double> size = numbers(value);
-      for (std::size_t k = 0; k < 3 && k < size.size(); ++k) {
-        said.header.grid.size[k] = static_cast<std::uint32_t>(size[k]);
-      }
-    }
-    if (key == "origin") said.header.grid.origin = vector(numbers(value));
-    if (key == "spacing") said.header.grid.spacing = vector(numbers(value));
-    if (key == "to_world") {
-      const std::vector<double> m = numbers(value);
-      if (m.size() == 16) std::copy(m.begin(), m.end(), said.header.to_world.m.begin());
-    }
-    if (key == "patient_axes") said.header.patient_axes = value == "1";
-    if (key == "unit") said.header.meters_per_unit = std::strtod(value.c_str(), nullptr);
-    if (key == "positions") said.header.slice_positions = numbers(value);
-    if (key == "file") said.header.files.emplace_back(value);
-    if (key == "warning") said.header.warnings.push_back(value);
-    if (key == "type") said.type = static_cast<io::VoxelType>(std::atoi(value.c_str()));
-    if (key == "code") said.error.code = static_cast<ErrorCode>(std::atoi(value.c_str()));
-    if (key == "what") said.error.what = value;
-    if (key == "where") said.error.where = value;
-    if (key == "remedy") said.error.remedy = value;
-    if (key == "done") said.done = true;
-    if (key == "failed") said.failed = true;
+SaidVolume volume_of(const ChildReport& report) {
+  SaidVolume said;
+  const std::vector<double> size = report.numbers("size");
+  for (std::size_t k = 0; k < 3 && k < size.size(); ++k) {
+    said.header.grid.size[k] = static_cast<std::uint32_t>(size[k]);
   }
+  said.header.grid.origin = vector(report.numbers("origin"));
+  said.header.grid.spacing = vector(report.numbers("spacing"));
+  const std::vector<double> m = report.numbers("to_world");
+  if (m.size() == said.header.to_world.m.size()) std::copy(m.begin(), m.end(), said.header.to_world.m.begin());
+  said.header.patient_axes = report.value("patient_axes") == "1";
+  said.header.meters_per_unit = report.number("unit");
+  said.header.slice_positions = report.numbers("positions");
+  for (const std::string& file : report.values("file")) said.header.files.emplace_back(file);
+  said.header.warnings = report.values("warning");
+  said.type = static_cast<io::VoxelType>(static_cast<int>(report.number("type")));
   return said;
 }
 

@@ -1,10 +1,10 @@
-// What the program that reads volumes says to the command that started it: lines of "key value".
+// What the command and the program that reads volumes for it say to each other.
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "app/child_report.h"
 #include "lodestone/io/volume.h"
 
 namespace lodestone::app {
@@ -22,16 +22,13 @@ struct VolumeWords {
 /// The same read back. Errors: bad_argument.
 Result<VolumeWords> parse_volume_words(const std::vector<std::string>& words);
 
-/// Lines about a volume.
-std::string report_of(const VolumeHeader& header, io::VoxelType type);
-std::string report_of(const Error& error);
-
-struct VolumeSaid {
+/// Says all of a volume but its values.
+void say_volume(const VolumeHeader& header, io::VoxelType type);
+struct SaidVolume {
   VolumeHeader header;
   io::VoxelType type = io::VoxelType::uint8;
-  bool done = false, failed = false;
-  Error error;
 };
-VolumeSaid parse_volume_report(const std::string& text);
+/// The same read back.
+SaidVolume volume_of(const ChildReport& report);
 
 }  // namespace lodestone::app

@@ -44,18 +44,18 @@ Result<std::optional<VoxelMethod>> voxel_method(const Arguments& arguments) {
     return std::optional<VoxelMethod>();
   }
   VoxelMethod method;
-  method.then_collapse = arguments.has("--then-collapse");
+  method.ladder.then_collapse = arguments.has("--then-collapse");
   if (arguments.has("--resolution")) {
-    if (!method.then_collapse) {
+    if (!method.ladder.then_collapse) {
       return fail(ErrorCode::bad_argument, "--resolution is for --then-collapse: levels take theirs from the targets");
     }
     const Result<std::uint32_t> resolution = resolution_of(arguments);
     if (!resolution) return fail(resolution.error());
-    method.resolution = *resolution;
+    method.ladder.resolution = *resolution;
   }
   const Result<chain::VoxelOptions> options = voxel_options(arguments, {}, {});
   if (!options) return fail(options.error());
-  method.voxel = *options;
+  method.ladder.voxel = *options;
   const Result<BakePlan> bake = bake_plan(arguments);
   if (!bake) return fail(bake.error());
   method.bake = *bake;

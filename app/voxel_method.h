@@ -1,7 +1,6 @@
 // Levels by voxels: what --method voxel of `build` takes.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,7 +10,7 @@
 #include "app/shared_options.h"
 #include "app/spec.h"
 #include "lodestone/base/result.h"
-#include "lodestone/chain/remesh.h"
+#include "lodestone/chain/voxel_ladder.h"
 
 namespace lodestone::app {
 
@@ -20,10 +19,8 @@ OptionGroup voxel_method_group();
 
 /// Nothing where levels are made by edge collapse. Errors: bad_argument (options of one method with the other).
 struct VoxelMethod {
-  chain::VoxelOptions voxel;
+  chain::VoxelLadderOptions ladder;
   BakePlan bake;
-  bool then_collapse = false;
-  std::uint32_t resolution = 0;  ///< 0 = by the targets
 };
 Result<std::optional<VoxelMethod>> voxel_method(const Arguments& arguments);
 

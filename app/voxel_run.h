@@ -9,6 +9,9 @@
 #include "app/reports.h"
 #include "app/volume_input.h"
 #include "lodestone/base/result.h"
+#include "lodestone/base/stopwatch.h"
+#include "lodestone/chain/solid.h"
+#include "lodestone/chain/voxel_levels.h"
 #include "lodestone/core/model.h"
 #include "lodestone/io/write.h"
 
@@ -18,6 +21,7 @@ struct VoxelRequest {
   std::string input, output;
   VolumeRequest volume;  ///< where the input is one
   io::Compression compression = io::Compression::none;
+  bool json = false;
 };
 
 /// Checked before anything is read. Errors: bad_argument, cannot_write.
@@ -26,13 +30,18 @@ Result<VoxelRequest> voxel_request(const Arguments& arguments, const char* verb)
 /// Reads the input and begins the report. Errors: those of reading; cannot_write (an output that is part of the input).
 Result<Model> read_solid(const VoxelRequest& request, VoxelReport& report, const Console& console);
 
-/// Writes the result and ends the report but for its times. Errors: those of writing.
-Result<void> write_surface(const Model& model, const VoxelRequest& request, VoxelReport& report, Console& console);
+/// Fills in what is known of the solid.
+void add_solid(VoxelReport& report, const chain::FillChoice& fill, const std::array<std::uint32_t, 3>& resolution,
+               std::uint64_t voxels_inside);
+void add_seconds(VoxelReport& report, const chain::VoxelSeconds& seconds);
+
+/// Writes the result, ends the report (`watch` started before anything was read) and prints it, as JSON or a table.
+/// Errors: those of writing.
+Result<void> finish(const Model& model, const VoxelRequest& request, Stopwatch& watch, VoxelReport& report,
+                    Console& console);
 
 /// Tells warnings and keeps them.
 void tell(VoxelReport& report, const std::vector<std::string>& warnings, const Console& console);
-
-std::string table_of(const VoxelReport& report);
 
 /// The error with the place where it has none.
 Error with_place(Error error, const std::string& place);

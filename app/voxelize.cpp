@@ -1,9 +1,6 @@
-#include "app/json.h"
 #include "app/verbs.h"
 #include "app/voxel_options.h"
 #include "app/voxel_run.h"
-#include "lodestone/base/stopwatch.h"
-#include "lodestone/chain/solid.h"
 #include "lodestone/voxel/cube_faces.h"
 
 namespace lodestone::app {
@@ -31,24 +28,15 @@ Result<ExitCode> run_voxelize(const Arguments& arguments, Console& console) {
   options.resolution = *resolution;
   const Result<chain::Solid> solid = chain::solid_of(*model, *choice, options, console.task().part(0.4, "voxelizing"));
   if (!solid) return fail(with_place(solid.error(), report.input));
-  report.resolution = solid->volume.grid.size;
-  report.voxels_inside = solid->volume.set_count();
-  report.fill = name_of(choice->fill);
-  report.fill_reason = choice->reason;
+  add_solid(report, *choice, solid->volume.grid.size, solid->volume.set_count());
   tell(report, solid->warnings, console);
   report.voxelize_seconds = solid->seconds.slicing + solid->seconds.filling;
   report.prepare_seconds = watch.lap() - report.voxelize_seconds;
   Result<Mesh> mesh = voxel::cube_faces(solid->volume, console.task().part(0.4, "making cubes"));
   if (!mesh) return fail(mesh.error());
-  Model cubes = make_model(std::move(*mesh));
-  cubes.meters_per_unit = model->meters_per_unit;
-  report.triangles = drawn_triangles(cubes);
+  const Model cubes = make_model(std::move(*mesh), *model);
   report.isosurface_seconds = watch.lap();
-  if (const Result<void> written = write_surface(cubes, *request, report, console); !written)
-    return fail(written.error());
-  report.write_seconds = watch.lap();
-  report.total_seconds = watch.total();
-  console.result(arguments.has("--json") ? to_json(report) : table_of(report));
+  if (const Result<void> done = finish(cubes, *request, watch, report, console); !done) return fail(done.error());
   return ExitCode::done;
 }
 

@@ -1,7 +1,5 @@
 // lod-read-volume: reads a volume through other people's libraries, apart from the command that started it, so that a
 // crash or a hang there is an ordinary error here. Values go to a file, all else to the pipe that it was given.
-#include <unistd.h>
-
 #include <new>
 
 #include "app/volume_report.h"
@@ -11,24 +9,12 @@
 namespace lodestone::app {
 namespace {
 
-constexpr int kReportDescriptor = 3;  // as in app/child_process.h
-
-bool say(const std::string& text) {
-  std::size_t done = 0;
-  while (done < text.size()) {
-    const ssize_t wrote = ::write(kReportDescriptor, text.data() + done, text.size() - done);
-    if (wrote <= 0) return false;
-    done += static_cast<std::size_t>(wrote);
-  }
-  return true;
-}
-
 Result<void> read(const VolumeWords& words) {
   Result<OutputFile> file = OutputFile::create(words.values);
   if (!file) return fail(file.error());
   io::VolumeSink sink;
   sink.begin = [](const VolumeHeader& header, io::VoxelType type) -> Result<void> {
-    if (!say(report_of(header, type))) ::_exit(1);
+    say_volume(header, type);
     return {};
   };
   sink.slice = [&](std::span<const std::byte> values) -> Result<void> {
@@ -51,7 +37,10 @@ int main(int argc, char** argv) {
   Error error;
   try {
     const Result<void> done = words ? app::read(*words) : Result<void>(fail(words.error()));
-    if (done) return app::say("done \n") ? 0 : 1;
+    if (done) {
+      app::say_done();
+      return 0;
+    }
     error = done.error();
   } catch (const std::bad_alloc&) {
     error = Error{ErrorCode::out_of_memory,
@@ -59,6 +48,6 @@ int main(int argc, char** argv) {
                   words ? words->volume.string() : std::string(),
                   {}};
   }
-  app::say(app::report_of(error));
+  app::say_failed(error);
   return 1;
 }

@@ -41,6 +41,16 @@ double median_ms(int repeats, const std::function<void()>& call) {
   return times[times.size() / 2];
 }
 
+// Ours with one thread and with two.
+std::array<double, 2> our_ms(const std::function<void(const Task&)>& call) {
+  std::array<double, 2> ours{};
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    ours[threads - 1] = median_ms(9, [&] { call(Task::root({}, threads)); });
+  }
+  return ours;
+}
+
 vtkNew<vtkPolyData> poly_of(const spatial::Surface& surface) {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToFloat();
@@ -55,11 +65,7 @@ vtkNew<vtkPolyData> poly_of(const spatial::Surface& surface) {
 
 void solids(const spatial::Surface& surface, int repeats) {
   const VoxelGrid grid = *voxel::grid_around(surface.bounds, 512);
-  double ours[2];
-  for (const int threads : {1, 2}) {
-    const ThreadLimit limit(threads);
-    ours[threads - 1] = median_ms(9, [&] { (void)voxel::voxelize(surface, grid, {}, Task::root({}, threads)); });
-  }
+  const auto ours = our_ms([&](const Task& task) { (void)voxel::voxelize(surface, grid, {}, task); });
   const std::uint64_t inside = voxel::voxelize(surface, grid)->volume.set_count();
   const auto poly = poly_of(surface);
   std::int64_t filled = 0;
@@ -98,16 +104,12 @@ void solids(const spatial::Surface& surface, int repeats) {
 }
 
 void contours(const char* name, const ScalarVolume<std::uint8_t>& volume, int repeats) {
-  double ours[2];
   std::size_t triangles = 0, vertices = 0;
-  for (const int threads : {1, 2}) {
-    const ThreadLimit limit(threads);
-    ours[threads - 1] = median_ms(9, [&] {
-      const auto mesh = voxel::isosurface(volume, {127.5}, Task::root({}, threads));
-      triangles = mesh->triangles.size();
-      vertices = mesh->positions.size();
-    });
-  }
+  const auto ours = our_ms([&](const Task& task) {
+    const auto mesh = voxel::isosurface(volume, {127.5}, task);
+    triangles = mesh->triangles.size();
+    vertices = mesh->positions.size();
+  });
   vtkNew<vtkImageData> image;
   const auto& n = volume.grid.size;
   image->SetDimensions(static_cast<int>(n[0]), static_cast<int>(n[1]), static_cast<int>(n[2]));

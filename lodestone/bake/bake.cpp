@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "lodestone/bake/dilate_detail.h"
-#include "lodestone/bake/smooth_normals_detail.h"
 #include "lodestone/bake/texel_owners_detail.h"
 #include "lodestone/base/parallel.h"
 #include "lodestone/core/srgb.h"
 #include "lodestone/core/tangents.h"
+#include "lodestone/spatial/smooth_normals.h"
 
 namespace lodestone::bake {
 
@@ -59,7 +59,7 @@ void set_frames(Mesh& mesh) {
   if (floats_of(mesh, Semantic::normal, 3) == nullptr) {
     std::erase_if(mesh.attributes,
                   [](const AttributeStream& s) { return s.semantic == Semantic::normal && s.set == 0; });
-    const std::vector<Vec3d> smooth = detail::vertex_normals(mesh);
+    const std::vector<Vec3d> smooth = spatial::vertex_normals(mesh);
     AttributeStream stream =
         make_stream("NORMAL", Semantic::normal, 3, ComponentType::float32, false, mesh.wedge_count());
     auto& values = std::get<std::vector<float>>(stream.values);

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <vector>
 
-#include "lodestone/bake/smooth_normals_detail.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/spatial/bvh.h"
 #include "lodestone/spatial/closest_batch.h"
+#include "lodestone/spatial/smooth_normals.h"
 
 namespace lodestone::bake {
 
@@ -32,7 +32,7 @@ struct BakeSource::Data {
   spatial::Surface surface;
   spatial::Bvh tree;
   spatial::DrawnAttributes attributes;
-  std::vector<std::array<Vec3f, 3>> normals;  // of corners; empty where the model has its own everywhere
+  std::optional<spatial::CreaseNormals> normals;  // none where the model has its own everywhere
   double reach;
 
   Data(const Model& model, spatial::Surface made, const Task& task)
@@ -40,7 +40,7 @@ struct BakeSource::Data {
         tree(surface, task),
         attributes(model, surface),
         reach(kReach * surface.bounds.diagonal()) {
-    if (!all_have_normals(model)) normals = detail::crease_normals(surface, task);
+    if (!all_have_normals(model)) normals.emplace(surface, task);
   }
 };
 
@@ -78,10 +78,11 @@ Vec3d BakeSource::point(const Place& place) const {
 
 Vec3d BakeSource::normal(const Place& place) const {
   if (const std::optional<Vec3d> own = data_->attributes.stream_normal(place)) return *own;
-  if (data_->normals.empty()) return data_->attributes.normal(place).value_or(Vec3d{});
-  const std::array<Vec3f, 3>& n = data_->normals[place.triangle];
+  if (!data_->normals) return data_->attributes.normal(place).value_or(Vec3d{});
   const std::array<double, 3> w = place.weights();
-  return normalized(to_double(n[0]) * w[0] + to_double(n[1]) * w[1] + to_double(n[2]) * w[2]);
+  Vec3d sum{};
+  for (std::size_t k = 0; k < 3; ++k) sum += data_->normals->at(place.triangle, k) * w[k];
+  return normalized(sum);
 }
 
 Vec3d BakeSource::color(const Place& place) const { return data_->attributes.light(place); }

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodestone/bake/smooth_normals_detail.h"
 #include "lodestone/base/parallel.h"
 #include "lodestone/core/tangents.h"
+#include "lodestone/spatial/smooth_normals.h"
 
 namespace lodestone::bake {
 
@@ -25,7 +25,7 @@ float whole_255th(double light) {
 }
 
 std::vector<Tuple> tuples_of(const Mesh& target, const BakeSource& source, const Task& task) {
-  const std::vector<Vec3d> own = detail::vertex_normals(target);
+  const std::vector<Vec3d> own = spatial::vertex_normals(target);
   std::vector<Tuple> tuples(target.vertex_count());
   parallel_for(tuples.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<Vec3d> points;

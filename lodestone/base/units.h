@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,9 @@ struct Length {
   double value = 0;
   enum class Kind { relative, metres } kind = Kind::relative;
 };
+
+/// The whole of the text as a finite number, nothing for any other text.
+std::optional<double> parse_number(std::string_view text);
 
 /// Reads "0.001", "0.1%", "2mm", "0.5m", "3cm", "1km", "1in", "2ft". Must be finite and not negative.
 Result<Length> parse_length(std::string_view text);

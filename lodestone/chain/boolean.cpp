@@ -83,9 +83,7 @@ Result<BooleanResult> boolean(std::span<const Model> models, const BooleanOption
   out.voxels_inside = levels->voxels_inside();
   out.seconds.resample = levels->seconds().resample;
   out.seconds.isosurface = levels->seconds().isosurface;
-  out.model = make_model(std::move(*mesh));
-  out.model.meters_per_unit = models.front().meters_per_unit;
-  out.model.gltf_axes = models.front().gltf_axes;
+  out.model = make_model(std::move(*mesh), models.front());
   return out;
 }
 

@@ -53,20 +53,6 @@ Result<void> check(const LadderOptions& options) {
   return {};
 }
 
-// Wanted drawn triangles of each coarser level.
-std::vector<std::size_t> count_targets(const LadderOptions& options, std::size_t drawn) {
-  if (!options.triangles.empty()) return options.triangles;
-  std::vector<std::size_t> targets;
-  const auto share_of = [&](double share) {
-    return std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(drawn) * share + 0.5));
-  };
-  for (const double ratio : options.ratios) targets.push_back(share_of(ratio));
-  if (!targets.empty()) return targets;
-  double share = 1;
-  for (std::size_t level = 1; level < options.levels; ++level) targets.push_back(share_of(share *= 0.5));
-  return targets;
-}
-
 // Where a few spots make the whole mean, it depends on how many samples hit them: four times as many are taken then.
 // The limit is a relative standard error of 1 % (that of independent samples; stratified ones do better).
 Result<measure::Distance> measure_steadily(const measure::Reference& reference, const Model& model,
@@ -222,6 +208,24 @@ Result<void> check_drawn(const Model& original) {
 
 }  // namespace
 
+std::vector<std::size_t> detail::count_targets(const LadderOptions& options, std::size_t drawn) {
+  if (!options.triangles.empty()) return options.triangles;
+  std::vector<std::size_t> targets;
+  const auto share_of = [&](double share) {
+    return std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(drawn) * share + 0.5));
+  };
+  for (const double ratio : options.ratios) targets.push_back(share_of(ratio));
+  if (!targets.empty()) return targets;
+  double share = 1;
+  for (std::size_t level = 1; level < options.levels; ++level) targets.push_back(share_of(share *= 0.5));
+  return targets;
+}
+
+Result<void> detail::check_ladder(const Model& original, const LadderOptions& options) {
+  if (const Result<void> ok = check(options); !ok) return ok;
+  return check_drawn(original);
+}
+
 Level detail::original_level(const Model& original, double diagonal) {
   Level level;
   level.triangles = drawn_triangles(original);
@@ -247,9 +251,8 @@ Result<void> detail::compare_pictures(LadderResult& result, const measure::Image
 }
 
 Result<LadderResult> build_ladder(Model original, const LadderOptions& options, Task task) {
-  if (const Result<void> ok = check(options); !ok) return fail(ok.error());
-  if (const Result<void> ok = check_drawn(original); !ok) return fail(ok.error());
-  const std::vector<std::size_t> targets = count_targets(options, drawn_triangles(original));
+  if (const Result<void> ok = detail::check_ladder(original, options); !ok) return fail(ok.error());
+  const std::vector<std::size_t> targets = detail::count_targets(options, drawn_triangles(original));
   const std::size_t smallest = options.errors.empty() ? targets.back() : 1;
 
   LadderResult result;

@@ -44,6 +44,7 @@ struct Shortfall {
 struct LadderResult {
   Ladder ladder;
   std::vector<Shortfall> shortfalls;            ///< empty = every target was reached
+  std::vector<std::string> warnings;            ///< what had to be assumed, what vanished; plain words
   std::vector<measure::ImageDeviation> images;  ///< one a level, with LadderOptions::image; else empty
   double simplify_seconds = 0, measure_seconds = 0;
 };

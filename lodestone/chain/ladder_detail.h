@@ -1,12 +1,21 @@
 // What ladders of every method share.
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
 #include "lodestone/chain/build_ladder.h"
 #include "lodestone/core/level.h"
 
 namespace lodestone::chain::detail {
+
+/// Errors: bad_argument (options that contradict each other, lists that don't fall or rise), empty (nothing drawn).
+Result<void> check_ladder(const Model& original, const LadderOptions& options);
+
+/// Wanted drawn triangles of each coarser level.
+std::vector<std::size_t> count_targets(const LadderOptions& options, std::size_t drawn);
 
 /// Level 0: the original itself.
 Level original_level(const Model& original, double diagonal);

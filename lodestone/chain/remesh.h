@@ -8,7 +8,6 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
-#include "lodestone/chain/build_ladder.h"
 #include "lodestone/chain/voxel_levels.h"
 #include "lodestone/core/level.h"
 #include "lodestone/measure/distance.h"
@@ -21,7 +20,7 @@ struct RemeshOptions {
   std::size_t triangles = 0;  ///< at most so many, and not below nine tenths; 0 = no such target
   double error = 0;           ///< the coarsest whose measured error is within it, model units; 0 = no such target
   /// Reach the target by collapsing edges of a surface with a resolution that is given, or as fine as sixteen times the
-  /// target's count (200,000 to 4 million triangles) or a third of its error need.
+  /// target's count (200,000 to 4 million triangles; eight times where holes are closed) or a third of its error need.
   bool then_collapse = false;
   VoxelOptions voxel;
   bool measure = true;
@@ -45,12 +44,5 @@ struct RemeshResult {
 /// targets; then_collapse without one; a resolution beside a target without it; options out of range), empty,
 /// out_of_memory, cancelled.
 Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options = {}, Task task = {});
-
-/// build_ladder() with levels by voxels in place of edge collapse, each from the same solid, the finest first. The
-/// original must be one mesh placed once. With `then_collapse` the levels are collapsed from one surface by voxels; a
-/// `resolution` above 0 is that surface's. Errors as above and as build_ladder().
-Result<LadderResult> build_voxel_ladder(Model original, const LadderOptions& options, const VoxelOptions& voxel,
-                                        bool then_collapse, std::uint32_t resolution,
-                                        std::vector<std::string>& warnings, Task task = {});
 
 }  // namespace lodestone::chain

@@ -91,6 +91,18 @@ Result<Solid> solid_of(const Model& model, const FillChoice& choice, const Solid
   return solid_in(model, choice, *grid, task);
 }
 
+std::vector<std::string> assumptions(const FillChoice& choice, std::uint64_t leaking_columns) {
+  std::vector<std::string> out;
+  if (choice.fill == voxel::FillRule::winding && !choice.asked) {
+    out.push_back(choice.reason + ": holes are closed by what seems most inside (winding numbers)");
+  }
+  if (leaking_columns > 0) {
+    out.push_back(fmt::format("{} lines of voxels enter the model and never leave it, as {}",
+                              with_separators(leaking_columns), choice.reason));
+  }
+  return out;
+}
+
 Result<Solid> solid_in(const Model& model, const FillChoice& choice, const VoxelGrid& grid, Task task) {
   const bool wraps = choice.fill == voxel::FillRule::shrinkwrap;
   if (const Result<void> room = check_memory(grid, wraps ? 2.5 : 0.125); !room) return fail(room.error());
@@ -105,13 +117,7 @@ Result<Solid> solid_in(const Model& model, const FillChoice& choice, const Voxel
                               : "it is open and encloses nothing: close it first, or use --fill shrinkwrap");
   }
   Solid out;
-  if (choice.fill == voxel::FillRule::winding && !choice.asked) {
-    out.warnings.push_back(choice.reason + ": holes are closed by what seems most inside (winding numbers)");
-  }
-  if (made->leaking_columns > 0) {
-    out.warnings.push_back(fmt::format("{} lines of voxels enter the model and never leave it, as {}",
-                                       with_separators(made->leaking_columns), choice.reason));
-  }
+  out.warnings = assumptions(choice, made->leaking_columns);
   out.volume = std::move(made->volume);
   out.surface = std::move(*surface);
   out.seconds = made->seconds;

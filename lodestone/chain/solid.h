@@ -57,6 +57,9 @@ Result<Solid> solid_in(const Model& model, const FillChoice& choice, const Voxel
 /// The grid of solid_of() around a box. Errors: bad_argument.
 Result<VoxelGrid> solid_grid(const Box3d& bounds, const FillChoice& choice, const SolidOptions& options);
 
+/// What had to be assumed to fill a model, in plain words for the user.
+std::vector<std::string> assumptions(const FillChoice& choice, std::uint64_t leaking_columns);
+
 /// Whether so many bytes for a grid can be had. Errors: out_of_memory, which says how many are needed and there.
 Result<void> check_memory(const VoxelGrid& grid, double bytes_a_voxel);
 

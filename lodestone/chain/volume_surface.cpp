@@ -83,11 +83,12 @@ void to_world(const VolumeHeader& header, Mesh& mesh, const Task& task) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
 }
 
+// The surface of values in the frame of a volume, wherever in it their grid lies.
 template <class T>
-Result<Mesh> contour(const VolumeHeader& header, std::span<const T> values, voxel::IsosurfaceOptions options,
+Result<Mesh> contour(const VolumeHeader& frame, const VolumeView<T>& values, const voxel::IsosurfaceOptions& options,
                      const Task& task) {
-  Result<Mesh> mesh = voxel::isosurface(VolumeView<T>{header.grid, values}, options, task);
-  if (mesh) to_world(header, *mesh, task);
+  Result<Mesh> mesh = voxel::isosurface(values, options, task);
+  if (mesh) to_world(frame, *mesh, task);
   return mesh;
 }
 
@@ -170,14 +171,12 @@ Result<void> add_labels(const ScannedVolume& volume, std::span<const T> values, 
   for (const auto& [label, box] : *boxes) {
     if (task.cancelled()) return cancelled_error("contouring");
     ScalarVolume<std::uint8_t> mask = mask_of(view, box, label);
-    Result<Mesh> mesh =
-        contour<std::uint8_t>({mask.grid, volume.header.to_world, false, 0, {}, {}, {}}, mask.values, {127.5}, task);
+    Result<Mesh> mesh = contour(volume.header, mask.view(), {127.5}, task);
     if (options.smooth > 0) {
       const Vec3d sigma = blur_of(options, mask.grid);
-      const auto soft = voxel::gaussian(voxel::padded<std::uint8_t>(mask, voxel::gaussian_reach(sigma)), sigma, task);
+      const auto soft = voxel::gaussian(voxel::padded(mask, voxel::gaussian_reach(sigma)), sigma, task);
       if (!soft) return fail(soft.error());
-      Result<Mesh> smoothed =
-          contour<float>({soft->grid, volume.header.to_world, false, 0, {}, {}, {}}, soft->values, {127.5}, task);
+      Result<Mesh> smoothed = contour(volume.header, soft->view(), {127.5}, task);
       if (smoothed) mesh = std::move(smoothed);  // a label of a few voxels may blur away: it stays as it is
     }
     if (!mesh) return fail(mesh.error());
@@ -192,14 +191,14 @@ Result<void> add_labels(const ScannedVolume& volume, std::span<const T> values, 
 template <class T>
 Result<Mesh> filtered_contour(const VolumeHeader& header, std::span<const T> values, double iso,
                               const VolumeSurfaceOptions& options, const Task& task) {
-  if (!options.median && !(options.smooth > 0)) return contour(header, values, {iso, options.trilinear}, task);
   const VolumeView<T> view{header.grid, values};
+  if (!options.median && !(options.smooth > 0)) return contour(header, view, {iso, options.trilinear}, task);
   Result<ScalarVolume<float>> made = options.median ? voxel::median(view, 1, task) : voxel::as_float(view, task);
   if (made && options.smooth > 0) {
     made = voxel::gaussian(std::move(*made), blur_of(options, header.grid), task);
   }
   if (!made) return fail(made.error());
-  return contour<float>(header, made->values, {iso, options.trilinear}, task);
+  return contour(header, made->view(), {iso, options.trilinear}, task);
 }
 
 // Patients lie in LPS; glTF wants Y up (superior) and Z forward (anterior).

@@ -45,7 +45,7 @@ bool needs_slabs(const VoxelGrid& grid, std::uint32_t supersample, const VoxelOp
   return can && voxels / 8 + 1.2 * voxels / ratio > kWholeBytes;
 }
 
-// The iso at which the surface encloses a volume: secants between 1 and 254.
+// The iso at which the surface encloses a volume: halving between 1 and 254.
 Result<Mesh> contour_of_volume(const ScalarVolume<std::uint8_t>& shares, double wanted, const Task& task) {
   double low = 1, high = 254;
   std::optional<Mesh> best;
@@ -137,6 +137,7 @@ Result<Mesh> VoxelLevels::surface_by_slabs(std::uint32_t resolution, const Task&
   voxel::project(made->mesh, *source_, grid.spacing.x * ratio, task);
   if (task.cancelled()) return cancelled_error("remeshing");
   voxels_inside_ = made->voxels_inside;
+  solid_->warnings = assumptions(fill_, made->leaking_columns);
   seconds_.voxelize += made->voxelize_seconds;
   seconds_.resample += made->resample_seconds;
   seconds_.isosurface += made->isosurface_seconds + watch.lap();

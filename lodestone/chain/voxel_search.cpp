@@ -1,37 +1,65 @@
+#include "lodestone/chain/voxel_search_detail.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include "lodestone/chain/voxel_search_detail.h"
+#include "lodestone/base/units.h"
 
 namespace lodestone::chain::detail {
 
 namespace {
 
 constexpr std::uint32_t kLeast = 4, kMost = 16'384;
+constexpr std::uint32_t kUsual = 128;
+constexpr std::uint32_t kMostForError = 512;  // finer surfaces than that are asked for by name
+
+// How fine the surface must be that is collapsed, so that the target's error is not that of the voxels. Where holes are
+// closed, fine solids cost too much, and thin sheets get a topology that no collapse takes back.
+constexpr std::size_t kStart = 16, kLeastStart = 200'000, kMostStart = 4'000'000, kStartOfOpen = 8;
+constexpr double kStartError = 3;
 
 std::uint32_t clamped(double resolution, std::uint32_t most) {
   return static_cast<std::uint32_t>(
       std::clamp(resolution + 0.5, static_cast<double>(kLeast), static_cast<double>(most)));
 }
 
-}  // namespace
+// A surface at resolution r has about `per_square` r² triangles.
+struct Growth {
+  double per_square = 0;  // 0: nothing is left even of fine solids
+  voxel::FillRule fill = voxel::FillRule::parity;
+};
 
-Result<std::uint32_t> predict_resolution(const Model& model, const VoxelOptions& options, std::size_t triangles,
-                                         const Task& task) {
+Result<Growth> growth_of(const Model& model, const VoxelOptions& options, const Task& task) {
   VoxelOptions quick = options;
-  quick.supersample = 2;
-  if (quick.fill == voxel::FillRule::winding) quick.supersample = 1;
+  quick.supersample = quick.fill == voxel::FillRule::winding ? 1 : 2;
+  Growth growth;
   for (std::uint32_t resolution = 48; resolution <= 384; resolution *= 2) {
     Result<VoxelLevels> levels = VoxelLevels::create(model, quick, resolution, task);
     if (!levels && (levels.error().code != ErrorCode::empty || resolution == 384)) return fail(levels.error());
     if (!levels) continue;
+    growth.fill = levels->fill().fill;
     const Result<Mesh> mesh = levels->surface_at(resolution, task);
     if (!mesh && mesh.error().code != ErrorCode::empty) return fail(mesh.error());
     if (!mesh || mesh->triangles.size() < 200) continue;
-    const double count = static_cast<double>(mesh->triangles.size());
-    return clamped(resolution * std::sqrt(static_cast<double>(triangles) / count), kMost);
+    growth.per_square = static_cast<double>(mesh->triangles.size()) / resolution / resolution;
+    break;
   }
-  return 128;
+  return growth;
+}
+
+std::size_t start_triangles(std::size_t target, voxel::FillRule fill) {
+  const bool closed = fill == voxel::FillRule::parity || fill == voxel::FillRule::nonzero;
+  const std::size_t wanted =
+      closed ? std::clamp(target * kStart, kLeastStart, kMostStart) : std::min(target * kStartOfOpen, kMostStart);
+  return std::max(wanted, target);
+}
+
+Result<VoxelCut> cut_at(VoxelLevels& levels, std::uint32_t resolution, const Task& task) {
+  Result<Mesh> mesh = levels.surface_at(resolution, task);
+  if (!mesh) return fail(mesh.error());
+  return VoxelCut{resolution, std::move(*mesh), {}};
 }
 
 Result<VoxelCut> find_count(VoxelLevels& levels, std::size_t triangles, std::uint32_t guess, const Task& task) {
@@ -100,6 +128,58 @@ Result<VoxelCut> find_error(VoxelLevels& levels, double limit, std::uint32_t gue
     return fail(ErrorCode::empty, "no part is half as thick as a voxel", {}, "raise --resolution");
   }
   return finest;
+}
+
+}  // namespace
+
+Result<std::uint32_t> finest_for(const Model& model, const VoxelOptions& options, const VoxelTarget& target,
+                                 const Task& task) {
+  if (target.resolution > 0) return target.resolution;
+  if (target.triangles == 0) return target.error > 0 ? kMostForError : kUsual;
+  const Result<Growth> growth = growth_of(model, options, task);
+  if (!growth) return fail(growth.error());
+  if (!(growth->per_square > 0)) return kUsual;
+  const std::size_t wanted = target.then_collapse ? start_triangles(target.triangles, growth->fill) : target.triangles;
+  const double predicted = std::sqrt(static_cast<double>(wanted) / growth->per_square);
+  constexpr double kRoom = 1.125;  // for predictions that are a little low
+  return std::max<std::uint32_t>(8, clamped(target.then_collapse ? predicted : kRoom * predicted, kMost));
+}
+
+bool needs_reference(const VoxelTarget& target) { return target.error > 0 && target.resolution == 0; }
+
+Result<VoxelCut> cut_for(VoxelLevels& levels, const VoxelTarget& target, std::uint32_t finest,
+                         const measure::Reference* reference, const measure::DistanceOptions& distance,
+                         const Task& task) {
+  if (target.resolution > 0) return cut_at(levels, finest, task);
+  if (target.error > 0) {
+    const double limit = target.then_collapse ? target.error / kStartError : target.error;
+    return find_error(levels, limit, target.then_collapse ? kUsual : kUsual / 2, *reference, distance, task);
+  }
+  if (target.then_collapse || target.triangles == 0) return cut_at(levels, finest, task);
+  return find_count(levels, target.triangles, finest * 8 / 9, task);
+}
+
+std::string shortfall_of(const VoxelTarget& target, const VoxelCut& cut) {
+  const std::size_t count = cut.mesh.triangles.size();
+  if (target.triangles > 0 && (count > target.triangles || count * 10 < target.triangles * 9)) {
+    return fmt::format("{} triangles were asked for, {} are the nearest that a resolution gives",
+                       with_separators(target.triangles), with_separators(count));
+  }
+  if (target.error > 0 && cut.distance && cut.distance->trusted_max() > target.error) {
+    return fmt::format("no resolution up to {} has a measured error within {:.6g}", cut.resolution, target.error);
+  }
+  return {};
+}
+
+void tell_vanished(const VoxelLevels& levels, const Model& model, const VoxelCut& cut,
+                   std::vector<std::string>& warnings) {
+  const std::vector<std::string> gone = levels.vanished(model, cut.mesh, cut.resolution);
+  if (gone.empty()) return;
+  constexpr std::size_t kNamed = 4;
+  const auto end = gone.begin() + static_cast<std::ptrdiff_t>(std::min(kNamed, gone.size()));
+  warnings.push_back(fmt::format("{} of the model's pieces vanished, as they are thinner than a voxel: {}{}",
+                                 with_separators(gone.size()), fmt::join(gone.begin(), end, "; "),
+                                 gone.size() > kNamed ? "; ..." : ""));
 }
 
 }  // namespace lodestone::chain::detail

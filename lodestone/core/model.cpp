@@ -11,6 +11,13 @@ Model make_model(Mesh mesh) {
   return model;
 }
 
+Model make_model(Mesh mesh, const Model& like) {
+  Model model = make_model(std::move(mesh));
+  model.meters_per_unit = like.meters_per_unit;
+  model.gltf_axes = like.gltf_axes;
+  return model;
+}
+
 std::size_t drawn_triangles(const Model& model) {
   std::size_t sum = 0;
   for (const Instance& instance : model.instances) sum += model.meshes[instance.mesh].triangles.size();

@@ -49,6 +49,9 @@ struct Model {
 /// A model of one mesh placed once, as is.
 Model make_model(Mesh mesh);
 
+/// The same in the unit and with the axes of another model, whose world space it lies in.
+Model make_model(Mesh mesh, const Model& like);
+
 /// Triangles drawn: every instance counts.
 std::size_t drawn_triangles(const Model& model);
 

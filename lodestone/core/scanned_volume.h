@@ -16,7 +16,7 @@ namespace lodestone {
 
 /// All about a volume but its values.
 struct VolumeHeader {
-  VoxelGrid grid;  ///< in the volume's own frame: the first voxel's centre is at (0, 0, 0), spacing in `unit`
+  VoxelGrid grid;  ///< in the volume's own frame: the first voxel's centre is at (0, 0, 0)
   Mat4d to_world;  ///< the volume's own frame to the world; columns need not be at right angles (gantry tilt)
   bool patient_axes = false;   ///< world axes are a patient's: x left, y posterior, z superior (LPS), millimetres
   double meters_per_unit = 0;  ///< 0.001 for millimetres; 0 = the file doesn't say

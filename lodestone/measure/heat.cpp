@@ -213,8 +213,7 @@ Result<Heat> heat_map(const Model& a, const Model& b, const HeatOptions& options
   heat.percentile_99 = area_percentile(field, 0.99, heat.largest, task);
   // What is nothing but rounding gets no colours, and few places that are far off don't leave all else to rounding.
   heat.range = heat.largest > kNothing * diagonal ? std::max(heat.percentile_99, heat.largest / 20) : 0;
-  heat.model = make_model(mesh_of(std::move(field), offset, heat.range, options.linear_colors));
-  heat.model.meters_per_unit = a.meters_per_unit;
+  heat.model = make_model(mesh_of(std::move(field), offset, heat.range, options.linear_colors), a);
   return heat;
 }
 

@@ -7,7 +7,8 @@
 #include <limits>
 
 #include "lodestone/base/parallel.h"
-#include "lodestone/render/smooth_normals_detail.h"
+#include "lodestone/render/packed_normal_detail.h"
+#include "lodestone/spatial/smooth_normals.h"
 
 namespace lodestone::render::detail {
 
@@ -80,7 +81,13 @@ bool any(const StreamOfMesh& streams) {
 }
 
 void gather_normals(const Model& model, const Spots& spots, SceneData& data, const Task& task) {
-  data.normals = smooth_normals(data.surface, task);
+  const spatial::CreaseNormals made(data.surface, task);
+  data.normals.resize(data.surface.triangles.size());
+  parallel_for(data.normals.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t t = begin; t < end; ++t) {
+      for (std::size_t k = 0; k < 3; ++k) data.normals[t][k] = pack_normal(made.at(t, k));
+    }
+  });
   const StreamOfMesh streams =
       streams_of(model, [&](std::size_t m) { return usable(model.meshes[m], Semantic::normal, 0, 3); });
   if (!any(streams)) return;

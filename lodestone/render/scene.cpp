@@ -5,7 +5,6 @@
 
 #include "lodestone/render/corner_streams_detail.h"
 #include "lodestone/render/scene_detail.h"
-#include "lodestone/render/smooth_normals_detail.h"
 
 namespace lodestone::render {
 

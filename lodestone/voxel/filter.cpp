@@ -129,8 +129,7 @@ std::array<std::uint32_t, 3> gaussian_reach(Vec3d sigma) {
   return reach;
 }
 
-template <class T>
-ScalarVolume<float> padded(const VolumeView<T>& volume, const std::array<std::uint32_t, 3>& more) {
+ScalarVolume<float> padded(const VolumeView<std::uint8_t>& volume, const std::array<std::uint32_t, 3>& more) {
   ScalarVolume<float> out;
   out.grid = volume.grid;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -147,8 +146,6 @@ ScalarVolume<float> padded(const VolumeView<T>& volume, const std::array<std::ui
   }
   return out;
 }
-template ScalarVolume<float> padded(const VolumeView<std::uint8_t>&, const std::array<std::uint32_t, 3>&);
-template ScalarVolume<float> padded(const VolumeView<float>&, const std::array<std::uint32_t, 3>&);
 
 Result<ScalarVolume<float>> as_float(const VolumeView<std::uint8_t>& volume, Task task) {
   return floats_of(volume, task);

@@ -1,12 +1,12 @@
 #include "lodestone/voxel/project.h"
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <vector>
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/spatial/closest_batch.h"
+#include "lodestone/voxel/equal_places_detail.h"
 
 namespace lodestone::voxel {
 
@@ -45,25 +45,6 @@ std::size_t take_back_turned(const Mesh& mesh, const std::vector<Vec3f>& before,
   return kept;
 }
 
-// Two vertices at one place would be one for whoever welds by position: all but the first stay where they were.
-void part_equal_places(const std::vector<Vec3f>& before, std::vector<Vec3f>& moved) {
-  std::vector<std::uint32_t> order(moved.size());
-  std::iota(order.begin(), order.end(), 0U);
-  const auto less = [&](std::uint32_t a, std::uint32_t b) {
-    const Vec3f &p = moved[a], &q = moved[b];
-    if (p.x != q.x) return p.x < q.x;
-    if (p.y != q.y) return p.y < q.y;
-    if (p.z != q.z) return p.z < q.z;
-    return a < b;
-  };
-  std::sort(order.begin(), order.end(), less);
-  std::vector<std::uint32_t> again;
-  for (std::size_t i = 1; i < order.size(); ++i) {
-    if (moved[order[i]] == moved[order[i - 1]]) again.push_back(order[i]);
-  }
-  for (const std::uint32_t v : again) moved[v] = before[v];
-}
-
 }  // namespace
 
 std::size_t project(Mesh& mesh, const spatial::Bvh& source, double most, const Task& task) {
@@ -86,7 +67,7 @@ std::size_t project(Mesh& mesh, const spatial::Bvh& source, double most, const T
       },
       [](std::size_t a, std::size_t b) { return a + b; });
   if (task.cancelled()) return 0;
-  part_equal_places(mesh.positions, moved);
+  detail::part_equal_places(mesh.positions, moved);
   const std::size_t taken_back = take_back_turned(mesh, mesh.positions, moved, task);
   mesh.positions = std::move(moved);
   return count - std::min(count, taken_back);

@@ -12,6 +12,7 @@
 #include "lodestone/spatial/closest_batch.h"
 #include "lodestone/voxel/creases_detail.h"
 #include "lodestone/voxel/cube_cases_detail.h"
+#include "lodestone/voxel/equal_places_detail.h"
 #include "lodestone/voxel/isosurface_detail.h"
 #include "lodestone/voxel/row_numbers_detail.h"
 
@@ -24,6 +25,7 @@ struct Slice {
   std::vector<std::uint8_t> length;     // crossed edges of each ring
   std::vector<std::uint32_t> crossing;  // numbers of all, ring after ring
   std::vector<std::uint64_t> cube;      // of each ring
+  std::vector<Vec3d> middle;            // of each ring's crossings
   std::vector<Vec3d> vertex;            // of each ring
   std::vector<std::uint8_t> creased;    // 1: vertex on a crease, 2: on a corner
 };
@@ -130,9 +132,10 @@ void place_vertices(Dual& dual, const std::vector<detail::CreasePoint>& creases,
     for (std::size_t r = 0; r < count; ++r) {
       Vec3d sum;
       for (std::size_t k = 0; k < slice.length[r]; ++k) sum += crossing_point(dual, slice.crossing[at++]);
-      slice.vertex.push_back(sum / static_cast<double>(slice.length[r]));
+      slice.middle.push_back(sum / static_cast<double>(slice.length[r]));
     }
-    std::vector<Vec3d> moved = slice.vertex;
+    slice.vertex = slice.middle;
+    std::vector<Vec3d> moved = slice.middle;
     std::vector<spatial::Nearest> nearest(count);
     for (int turn = 0; turn < kTurns; ++turn) {
       spatial::ClosestBatch(dual.source).find(moved, nearest);
@@ -418,11 +421,14 @@ Result<SharpSurface> sharp_surface(const VolumeView<std::uint8_t>& volume, const
   SharpSurface out;
   Mesh& mesh = out.mesh;
   mesh.offset = contour->mesh.offset;
+  std::vector<Vec3f> middles;
   for (const Slice& slice : dual.slices) {
     for (const Vec3d& at : slice.vertex) mesh.positions.push_back(to_float(at - mesh.offset));
+    for (const Vec3d& at : slice.middle) middles.push_back(to_float(at - mesh.offset));
     out.features += static_cast<std::size_t>(
         std::count_if(slice.creased.begin(), slice.creased.end(), [](std::uint8_t c) { return c > 0; }));
   }
+  detail::part_equal_places(middles, mesh.positions);
   Quads(dual, mesh).make(task);
   if (task.cancelled()) return cancelled_error("contouring");
   return out;

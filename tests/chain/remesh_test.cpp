@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "lodestone/chain/boolean.h"
+#include "lodestone/chain/voxel_ladder.h"
 #include "lodestone/core/topology.h"
 #include "support/shapes.h"
 
@@ -130,8 +131,9 @@ TEST(VoxelLadder, has_a_level_for_each_target) {
   for (const bool then_collapse : {false, true}) {
     LadderOptions options;
     options.triangles = {8000, 2000, 500};
-    std::vector<std::string> warnings;
-    const auto made = build_voxel_ladder(make_model(test::sphere(96)), options, {}, then_collapse, 0, warnings);
+    VoxelLadderOptions voxels;
+    voxels.then_collapse = then_collapse;
+    const auto made = build_voxel_ladder(make_model(test::sphere(96)), options, voxels);
     ASSERT_TRUE(made) << made.error().what;
     ASSERT_EQ(made->ladder.levels.size(), 4U);
     double error = 0;
