@@ -23,6 +23,12 @@ VolumeSurfaceOptions labels_with(double smooth) {
   return options;
 }
 
+Model made_evenly(ScannedVolume volume) {
+  volume.header.slice_positions.clear();
+  auto made = surface_of(volume, labels_with(0));
+  return made ? std::move(made->model) : Model();
+}
+
 // A ball of radius r voxels around the middle: values fall off from 100 at its centre, 0 at its border, below beyond.
 struct Ball {
   ScannedVolume volume;
@@ -125,6 +131,15 @@ TEST(VolumeSurface, makes_a_mesh_for_each_label) {
     }
     EXPECT_LT(bounds_of(made->model.meshes[1]).max.x, bounds_of(made->model.meshes[0]).max.x);
   }
+  // Slices 1 apart up to the middle of the cubes, 3 apart beyond it.
+  for (int z = 0; z < 10; ++z) volume.header.slice_positions.push_back(z < 5 ? z : 5 + 3 * (z - 5));
+  const auto uneven = surface_of(volume, labels_with(0));
+  ASSERT_TRUE(uneven) << uneven.error().what;
+  for (const Mesh& mesh : uneven->model.meshes) {
+    const Box3d even_box = bounds_of(made_evenly(volume).meshes.front()), box = bounds_of(mesh);
+    EXPECT_NEAR(box.size().z, even_box.size().z + 1, 1e-5) << "the far slices are thicker";
+  }
+  volume.header.slice_positions.clear();
   std::vector<float> broken(1000, 0.5F);
   volume.values = std::span<const float>(broken);
   EXPECT_FALSE(surface_of(volume, labels_with(0)));

@@ -47,6 +47,22 @@ class Volumes(Scratch):
         self.lod("convert", "labels.raw", "labels.glb", "--labels", "--raw", "12,12,12")
         self.assertEqual(self.json("info", "labels.glb")["meshes"], 2)
 
+    def test_patients_stand_upright(self):
+        """Whatever a verb makes of a CT volume, glTF's y is the patient's height."""
+        head = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 24 24\nspace: left-posterior-superior\nencoding: raw\n"
+                "space directions: (1,0,0) (0,1,0) (0,0,2)\nspace origin: (0,0,100)\n\n")
+        (self.folder / "ct.nrrd").write_bytes(head.encode() + ball(24, 8))
+        for words in (("build", "--levels", "2"), ("convert",), ("voxelize", "--resolution", "20"),
+                      ("remesh", "--resolution", "20")):
+            with self.subTest(words):
+                output = ("out.glb",) if words[0] == "convert" else ("-o", "out.glb")
+                self.lod(words[0], "ct.nrrd", *output, *words[1:], "--iso", "127")
+                box = self.json("info", "out.glb")["bounds"]
+                size = [b - a for a, b in zip(box["min"], box["max"])]
+                self.assertGreater(size[1], 1.6 * size[0])
+                self.assertGreater(size[1], 1.6 * size[2])
+                self.assertGreater(box["min"][1], 0.1)
+
     def test_what_can_not_be(self):
         for words, code, part in (((*self.RAW, "--iso", "999"), 2, "0 to 255"),
                                   (("--raw", "24,24"), 2, "three"),

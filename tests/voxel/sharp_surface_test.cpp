@@ -4,11 +4,14 @@
 
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "lodestone/core/model.h"
 #include "lodestone/core/topology.h"
 #include "lodestone/spatial/bvh.h"
 #include "lodestone/spatial/surface.h"
+#include "lodestone/voxel/isosurface.h"
+#include "lodestone/voxel/project.h"
 #include "lodestone/voxel/resample.h"
 #include "lodestone/voxel/voxelize.h"
 #include "support/shapes.h"
@@ -34,6 +37,13 @@ Made sharp_of(const Mesh& mesh, std::uint32_t resolution, std::uint32_t ratio = 
   auto made = sharp_surface(*shares, tree, {}, task);
   EXPECT_TRUE(made) << made.error().what;
   return {std::move(*made), shares->grid.spacing.x};
+}
+
+// How many places hold a vertex.
+std::size_t places_of(const Mesh& mesh) {
+  std::set<std::array<float, 3>> places;
+  for (const Vec3f& p : mesh.positions) places.insert({p.x, p.y, p.z});
+  return places.size();
 }
 
 // A box turned so that no side lies along the grid.
@@ -77,6 +87,11 @@ TEST(SharpSurface, is_closed_and_manifold_on_noise) {
     EXPECT_TRUE(t.closed);
     EXPECT_EQ(t.nonmanifold_edges + t.inconsistent_edges + t.duplicate_faces, 0U) << turn;
     EXPECT_EQ(t.vertices, made->mesh.vertex_count());
+    EXPECT_EQ(places_of(made->mesh), made->mesh.vertex_count()) << "whoever welds by position finds it manifold";
+
+    Mesh projected = *isosurface(noise, {127.5});
+    project(projected, tree, 2);
+    EXPECT_EQ(places_of(projected), projected.vertex_count());
   }
 }
 
