@@ -19,6 +19,10 @@ Result<chain::RemeshOptions> remesh_options(const Arguments& arguments, const Le
   const Result<std::string> target = given_target(arguments, {"--triangles", "--error"}, "choose one");
   if (!target) return fail(target.error());
   options.then_collapse = arguments.has("--then-collapse");
+  options.prune = arguments.has("--prune");
+  if (options.prune && !options.then_collapse) {
+    return fail(ErrorCode::bad_argument, "--prune is for --then-collapse", {}, "add --then-collapse");
+  }
   if (arguments.has("--resolution") || target->empty()) {
     const Result<std::uint32_t> resolution = resolution_of(arguments);
     if (!resolution) return fail(resolution.error());

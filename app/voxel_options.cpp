@@ -91,6 +91,14 @@ OptionGroup remesh_target_group() {
                            "the coarsest surface whose measured error is within it",
                            {},
                            Completion::none});
+  group.options.push_back({"--prune",
+                           "",
+                           "",
+                           "",
+                           "",
+                           "with --then-collapse: separate parts vanish where that errs no more than the surface does",
+                           {},
+                           Completion::none});
   return group;
 }
 

@@ -273,8 +273,8 @@ std::string CollapsePlan::why_it_ends() const {
   const std::size_t parts = drawn_parts();
   if (parts < 2 || parts * kMany < triangles_after(size())) return why;
   return why + fmt::format(
-                   "; {} separate parts keep a few triangles each (--prune or --keep-area lets small ones vanish, "
-                   "--join LENGTH sews near ones together)",
+                   "; {} separate parts keep a few triangles each (--prune lets small ones vanish; of a mesh, --join "
+                   "LENGTH sews near ones together)",
                    with_separators(parts));
 }
 

@@ -22,6 +22,7 @@ struct RemeshOptions {
   /// Reach the target by collapsing edges of a surface with a resolution that is given, or as fine as sixteen times the
   /// target's count (200,000 to 4 million triangles; eight times where holes are closed) or a third of its error need.
   bool then_collapse = false;
+  bool prune = false;  ///< with it: parts vanish where that errs no more than the level does
   VoxelOptions voxel;
   bool measure = true;
   measure::DistanceOptions distance;
