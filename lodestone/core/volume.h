@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "lodestone/base/memory.h"
 #include "lodestone/math/vec.h"
 
 namespace lodestone {
@@ -33,8 +34,9 @@ struct BitVolume {
 
   BitVolume() = default;
   /// All 0. Memory: an eighth of a byte a voxel.
-  explicit BitVolume(const VoxelGrid& of)
-      : grid(of), row_words((of.size[0] + 63) / 64), words(row_words * of.size[1] * of.size[2]) {}
+  explicit BitVolume(const VoxelGrid& of) : grid(of), row_words((of.size[0] + 63) / 64) {
+    resize_large(words, row_words * of.size[1] * of.size[2]);
+  }
 
   std::size_t row_of(std::uint32_t y, std::uint32_t z) const { return (std::size_t{z} * grid.size[1] + y) * row_words; }
   bool at(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "lodestone/base/memory.h"
 #include "lodestone/base/parallel.h"
 
 namespace lodestone::voxel {
@@ -76,6 +77,19 @@ void add_row_between(const std::uint64_t* row, std::size_t words, std::span<cons
   }
 }
 
+// How much of `all` bits is set, 255 = all of them.
+std::uint8_t share_of(std::uint64_t count, std::uint64_t all) {
+  return static_cast<std::uint8_t>((255 * count + all / 2) / all);
+}
+
+// The same for each count, in place of a division a voxel; only {0} where that would be long.
+std::vector<std::uint8_t> share_table(std::uint64_t all) {
+  std::vector<std::uint8_t> table(1);
+  if (all > 1 << 16) return table;
+  for (std::uint64_t count = 1; count <= all; ++count) table.push_back(share_of(count, all));
+  return table;
+}
+
 // Counts of one row of large voxels.
 void count_row(const BitVolume& volume, std::span<const std::uint32_t> xs, std::uint32_t ratio,
                const std::uint64_t* row, std::vector<std::uint32_t>& counts) {
@@ -125,9 +139,10 @@ Result<ScalarVolume<std::uint8_t>> downsample(const BitVolume& volume, const std
   out.grid = volume.grid;
   out.grid.size = size;
   for (std::size_t k = 0; k < 3; ++k) out.grid.spacing[k] = volume.grid.spacing[k] * old[k] / size[k];
-  out.values.resize(static_cast<std::size_t>(out.grid.count()));
+  resize_large(out.values, static_cast<std::size_t>(out.grid.count()));
   const std::vector<std::uint32_t> xs = cuts(old[0], size[0]), ys = cuts(old[1], size[1]), zs = cuts(old[2], size[2]);
   const std::uint32_t ratio = old[0] % size[0] == 0 ? old[0] / size[0] : 0;  // 0: not a whole number
+  const std::vector<std::uint8_t> shares = share_table(std::uint64_t{ratio} * (ys[1] - ys[0]) * (zs[1] - zs[0]));
   parallel_for(size[2], 1, task, [&](std::size_t z, std::size_t, std::size_t) {
     std::vector<std::uint32_t> counts(size[0]);
     for (std::uint32_t y = 0; y < size[1]; ++y) {
@@ -140,10 +155,12 @@ Result<ScalarVolume<std::uint8_t>> downsample(const BitVolume& volume, const std
       }
       const std::uint64_t area = std::uint64_t{zs[z + 1] - zs[z]} * (ys[y + 1] - ys[y]);
       std::uint8_t* values = out.values.data() + out.index(0, y, static_cast<std::uint32_t>(z));
+      if (ratio != 0 && area * ratio == shares.size() - 1) {
+        for (std::uint32_t x = 0; x < size[0]; ++x) values[x] = shares[counts[x]];
+        continue;
+      }
       for (std::uint32_t x = 0; x < size[0]; ++x) {
-        if (counts[x] == 0) continue;
-        const std::uint64_t all = area * (xs[x + 1] - xs[x]);
-        values[x] = static_cast<std::uint8_t>((255 * std::uint64_t{counts[x]} + all / 2) / all);
+        if (counts[x] != 0) values[x] = share_of(counts[x], area * (xs[x + 1] - xs[x]));
       }
     }
   });

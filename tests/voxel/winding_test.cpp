@@ -57,8 +57,7 @@ Mesh soup(std::uint32_t seed, std::size_t triangles) {
   std::mt19937 random(seed);
   std::vector<Vec3f> points;
   for (int i = 0; i < 24; ++i) {
-    points.push_back(
-        {lattice(random, 4), lattice(random, 4), lattice(random, 3)});
+    points.push_back({lattice(random, 4), lattice(random, 4), lattice(random, 3)});
   }
   std::vector<Triangle> faces;
   const auto any = [&] { return static_cast<std::uint32_t>(random() % points.size()); };
