@@ -34,6 +34,7 @@ void add_levels(BuildReport& report, const chain::LadderResult& result, const io
     row.triangles = level.triangles;
     if (pruned) row.vanished_parts = level.vanished_parts;
     row.error = level.error;
+    row.method = level.method;
     if (!result.images.empty()) row.image = result.images[i];
     row.switch_distance = measure::switch_distance(level.error.error, 1, plan.view);
     row.bytes = written.level_bytes[i];

@@ -64,6 +64,10 @@ Result<BuildPlan> build_plan(const Arguments& arguments) {
   const Result<std::optional<VoxelMethod>> voxel = voxel_method(arguments);
   if (!voxel) return fail(voxel.error());
   plan.voxel = *voxel;
+  plan.effort = effort_of(arguments, chain::Effort::normal);
+  if (plan.voxel && arguments.has("--effort")) {
+    return fail(ErrorCode::bad_argument, "--effort is for levels by edge collapse", {}, "leave out --method voxel");
+  }
   plan.compression = compression_of(arguments);
   plan.image_error = arguments.has("--image-error");
   plan.report = arguments.has("--report");
@@ -85,6 +89,7 @@ Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& 
   Result<chain::Influence> influence = plan.influence.for_model(model, warnings);
   if (!influence) return fail(influence.error());
   options.influence = std::move(*influence);
+  options.effort = plan.voxel ? chain::Effort::fast : plan.effort;
   options.distance = plan.distance;
   if (plan.image_error) options.image.emplace();
   if (!plan.ratios.empty()) {

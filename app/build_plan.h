@@ -23,6 +23,7 @@ struct BuildPlan {
   double pixels = 1;
   measure::View view;
   LengthRules lengths;
+  chain::Effort effort = chain::Effort::normal;
   InfluencePlan influence;
   measure::DistanceOptions distance;
   VolumeRequest volume;

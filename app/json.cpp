@@ -50,6 +50,7 @@ Json level_json(const LevelReport& level) {
   if (level.vanished_parts) json["vanished_parts"] = *level.vanished_parts;
   add_error(json, level.error);
   if (level.image) json["image"] = image_json(*level.image);
+  json["method"] = level.method;
   json["switch_distance"] = level.switch_distance;
   json["bytes"] = level.bytes;
   json["file"] = level.file;
@@ -138,6 +139,7 @@ std::string to_json(const SimplifyReport& report) {
   add_error(json, report.error);
   json["diagonal"] = report.error.diagonal;
   json["unit"] = unit_or_null(report.unit);
+  json["method"] = report.method;
   json["stop_reason"] = report.stop_reason;
   json["shortfall"] = report.shortfall.empty() ? Json(nullptr) : Json(report.shortfall);
   json["locked"] = {{"border", report.locked.border},

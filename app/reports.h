@@ -23,6 +23,7 @@ struct LevelReport {
   std::optional<std::size_t> vanished_parts;  ///< drawn pieces of the input that have nothing left here; with --prune
   LevelError error;
   std::optional<measure::ImageDeviation> image;  ///< with --image-error
+  std::string method;                            ///< as Level::method
   double switch_distance = 0;                    ///< model units
   std::uint64_t bytes = 0;
   std::string file;
@@ -49,7 +50,7 @@ struct SimplifyReport {
   std::size_t triangles_in = 0, triangles = 0;
   std::optional<std::size_t> vanished_parts;  ///< as in LevelReport
   LevelError error;
-  std::string stop_reason, shortfall;
+  std::string method, stop_reason, shortfall;
   simplify::LockCounts locked;
   double read_seconds = 0, simplify_seconds = 0, measure_seconds = 0, write_seconds = 0;
   std::uint64_t bytes = 0, peak_memory_bytes = 0;

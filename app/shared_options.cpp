@@ -86,6 +86,26 @@ OptionGroup single_target_group() {
            error_option("E", "the coarsest mesh whose measured error is within it")}};
 }
 
+OptionGroup effort_group() {
+  return {"Effort",
+          {{"--effort",
+            "",
+            "HOW",
+            "",
+            "",
+            "fast: edge collapse; normal: half the maximum error for twice the time; best: less of both, ten times "
+            "(without: normal for ladders and errors, fast for a count)",
+            {"fast", "normal", "best"},
+            Completion::choices}}};
+}
+
+chain::Effort effort_of(const Arguments& arguments, chain::Effort otherwise) {
+  const std::string word = arguments.text("--effort");
+  if (word == "best") return chain::Effort::best;
+  if (word == "normal") return chain::Effort::normal;
+  return word == "fast" ? chain::Effort::fast : otherwise;
+}
+
 OptionGroup unit_group() {
   return {"Lengths",
           {{"--unit", "", "U", "", "", "the model's unit (glTF is in metres; other formats don't say)", unit_names(),

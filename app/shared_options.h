@@ -7,6 +7,7 @@
 
 #include "app/command_line.h"
 #include "app/spec.h"
+#include "lodestone/chain/effort.h"
 #include "lodestone/core/model.h"
 #include "lodestone/io/write.h"
 #include "lodestone/measure/distance.h"
@@ -17,6 +18,7 @@ namespace lodestone::app {
 OptionGroup ladder_target_group();  ///< --levels, --ratio, --triangles, --error, --pixels, --distances (build)
 OptionGroup view_group();           ///< --height, --fov
 OptionGroup single_target_group();  ///< --ratio, --triangles, --error (simplify)
+OptionGroup effort_group();         ///< --effort
 OptionGroup length_group();         ///< --unit, --absolute
 OptionGroup unit_group();           ///< --unit
 OptionGroup measuring_group(std::uint64_t samples);  ///< --samples, --seed
@@ -50,6 +52,9 @@ struct LengthRules {
 };
 
 Result<LengthRules> length_rules(const Arguments& arguments);
+/// --effort, or what stands for it where it is not given.
+chain::Effort effort_of(const Arguments& arguments, chain::Effort otherwise);
+
 /// What a bare number means.
 enum class BareLength { relative, model_units };
 Result<std::vector<LengthArgument>> length_list(const Arguments& arguments, std::string_view option,

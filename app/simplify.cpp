@@ -21,6 +21,7 @@ struct SimplifyPlan {
   std::vector<std::size_t> triangles;
   std::vector<LengthArgument> error;
   LengthRules lengths;
+  chain::Effort effort = chain::Effort::fast;
   InfluencePlan influence;
   measure::DistanceOptions distance;
 };
@@ -62,6 +63,7 @@ Result<SimplifyPlan> plan_of(const Arguments& arguments) {
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
   if (!distance) return fail(distance.error());
   plan.distance = *distance;
+  plan.effort = effort_of(arguments, plan.error.empty() ? chain::Effort::fast : chain::Effort::normal);
   return plan;
 }
 
@@ -71,6 +73,7 @@ Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const 
   Result<chain::Influence> influence = plan.influence.for_model(model, warnings);
   if (!influence) return fail(influence.error());
   options.influence = std::move(*influence);
+  options.effort = plan.effort;
   options.distance = plan.distance;
   if (!plan.ratio.empty()) {
     console.note(fmt::format("keeping {} of {} triangles", percent(plan.ratio[0]), with_separators(triangles)));
@@ -104,6 +107,7 @@ std::string table_of(const SimplifyReport& report) {
                                       percent(error.relative(error.error)), to_string(error.kind))});
   table.add_row({"mean error", fmt::format("{}{} ({})", short_number(error.mean_error), unit,
                                            percent(error.relative(error.mean_error)))});
+  table.add_row({"method", report.method});
   table.add_row({"stopped", report.stop_reason});
   table.add_row({"file", fmt::format("{} ({})", printable(report.output), human_bytes(report.bytes))});
   table.add_row({"seconds", fmt::format("read {}, simplify {}, measure {}, write {}", seconds_text(report.read_seconds),
@@ -160,6 +164,7 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
   report.triangles = result->level.triangles;
   if (plan->influence.influence.vanishes()) report.vanished_parts = result->level.vanished_parts;
   report.error = result->level.error;
+  report.method = result->level.method;
   report.stop_reason = simplify::to_string(result->stop);
   report.shortfall = result->shortfall;
   report.locked = result->locked;

@@ -74,66 +74,162 @@ struct Cut {
   double simplify_seconds = 0, measure_seconds = 0;
 };
 
-Result<Cut> make_cut(const CollapsePlan& plan, std::size_t prefix, const Reference& reference,
-                     const measure::DistanceOptions& options, const Task& task) {
-  Cut cut;
-  cut.prefix = prefix;
-  const Stopwatch making;
-  Result<Model> model = plan.model_after(prefix, task.part(0.3));
-  if (!model) return fail(model.error());
-  cut.simplify_seconds = making.total();
-  const Stopwatch measuring;
-  const Result<measure::Distance> d = measure_steadily(reference, *model, options, task.part(0.7));
-  if (!d) return fail(d.error());
-  cut.measure_seconds = measuring.total();
-  cut.level.triangles = drawn_triangles(*model);
-  cut.level.vanished_parts = plan.vanished_after(prefix);
-  cut.level.model = std::move(*model);
-  cut.level.method = "edge collapse";
-  cut.level.seconds = cut.simplify_seconds + cut.measure_seconds;
-  cut.level.error = detail::level_error(*d);
-  return cut;
+const char* method_of(Effort effort) {
+  if (effort == Effort::fast) return "edge collapse";
+  return effort == Effort::normal ? "edge collapse, weighted by its error" : "edge collapse, fitted by its error";
 }
 
-// The coarsest prefix found whose measured maximum is within `limit`, not finer than `start`: bisection on the
-// logarithm of the triangle count until the bracket is within one percent. Nothing within the limit: the cut at `start`
-// itself.
-Result<Cut> find_error_cut(const CollapsePlan& plan, std::size_t start, double limit, const Reference& reference,
-                           const measure::DistanceOptions& options, const Task& task) {
-  const Task probes = task.part(0.9, "searching");
-  std::size_t good = start, bad_prefix = plan.size() + 1;
-  Cut best;
+// Makes and measures levels of one plan.
+class LevelMaker {
+ public:
+  LevelMaker(const CollapsePlan& plan, const Reference& reference, const measure::DistanceOptions& distance,
+             Effort effort)
+      : plan_(plan), reference_(reference), distance_(distance), effort_(effort) {}
+
+  const CollapsePlan& plan() const { return plan_; }
+  Effort effort() const { return effort_; }
+
+  /// The level that edge collapse alone makes.
+  Result<Cut> plain(std::size_t prefix, const Task& task) const {
+    Cut cut;
+    const Stopwatch making;
+    Result<Model> model = plan_.model_after(prefix, task.part(0.3));
+    if (!model) return fail(model.error());
+    cut.simplify_seconds = making.total();
+    return measured(std::move(cut), prefix, std::move(*model), Effort::fast, task.part(0.7));
+  }
+
+  /// The same shaped by its error, if that is better; else the plain one.
+  Result<Cut> shaped(std::size_t prefix, const Task& task) {
+    Result<Cut> cut = plain(prefix, task.part(effort_ == Effort::fast ? 1.0 : 0.2));
+    if (!cut || effort_ == Effort::fast || prefix == 0) return cut;
+    Cut better;
+    const Stopwatch making;
+    Result<Model> model = plan_.shaped_after(prefix, effort_, targets_, task.part(0.6, "shaping"));
+    if (!model) return fail(model.error());
+    better.simplify_seconds = cut->simplify_seconds + making.total();
+    better.measure_seconds = cut->measure_seconds;
+    Result<Cut> made = measured(std::move(better), prefix, std::move(*model), effort_, task.part(0.2));
+    if (!made) return made;
+    const LevelError &now = made->level.error, &then = cut->level.error;
+    const double slack = effort_ == Effort::normal ? kMeanSlack : 1;
+    const bool better_of_both = now.measured_error < then.measured_error && now.mean_error <= slack * then.mean_error;
+    if (better_of_both && made->level.triangles <= cut->level.triangles) return made;
+    cut->simplify_seconds = made->simplify_seconds;
+    cut->measure_seconds = made->measure_seconds;
+    cut->level.seconds = cut->simplify_seconds + cut->measure_seconds;
+    return cut;
+  }
+
+ private:
+  static constexpr double kMeanSlack = 1.01;
+
+  Result<Cut> measured(Cut cut, std::size_t prefix, Model model, Effort effort, const Task& task) const {
+    const Stopwatch measuring;
+    const Result<measure::Distance> d = measure_steadily(reference_, model, distance_, task);
+    if (!d) return fail(d.error());
+    cut.prefix = prefix;
+    cut.measure_seconds += measuring.total();
+    cut.level.triangles = drawn_triangles(model);
+    cut.level.vanished_parts = plan_.vanished_after(prefix);
+    cut.level.model = std::move(model);
+    cut.level.method = method_of(effort);
+    cut.level.seconds = cut.simplify_seconds + cut.measure_seconds;
+    cut.level.error = detail::level_error(*d);
+    return cut;
+  }
+
+  const CollapsePlan& plan_;
+  const Reference& reference_;
+  const measure::DistanceOptions& distance_;
+  Effort effort_;
+  detail::FitTargets targets_;
+};
+
+// The coarsest cut found whose measured maximum is within a limit, by bisection on the logarithm of the triangle count
+// between `good`, a prefix that is within it or is taken for it, and `bad`, one that is not, until the bracket is
+// within `nearness`. Nothing within the limit: nothing.
+struct Search {
+  std::size_t good, bad;
+  double nearness;
+  std::optional<Cut> best;
   double simplify_seconds = 0, measure_seconds = 0;
-  bool have = false;
-  std::size_t probe = plan.size();
-  while (true) {
-    Result<Cut> cut = make_cut(plan, probe, reference, options, probes.part(0.1));
-    if (!cut) return fail(cut.error());
-    simplify_seconds += cut->simplify_seconds;
-    measure_seconds += cut->measure_seconds;
-    if (cut->level.error.measured_error <= limit) {
-      good = probe;
-      best = std::move(*cut);
-      have = true;
-    } else {
-      bad_prefix = probe;
+
+  template <class Make>
+  Result<void> run(const CollapsePlan& plan, double limit, std::size_t probe, Make&& make) {
+    while (true) {
+      Result<Cut> cut = make(probe);
+      if (!cut) return fail(cut.error());
+      simplify_seconds += cut->simplify_seconds;
+      measure_seconds += cut->measure_seconds;
+      if (cut->level.error.measured_error <= limit) {
+        good = probe;
+        best = std::move(*cut);
+      } else {
+        bad = probe;
+      }
+      const auto fine = static_cast<double>(plan.triangles_after(good));
+      const auto coarse = static_cast<double>(plan.triangles_after(std::min(plan.size(), bad)));
+      if (bad <= good + 1 || fine - coarse <= nearness * coarse) return {};
+      const auto middle = static_cast<std::size_t>(std::sqrt(fine * coarse));
+      probe = std::clamp(plan.prefix_for(middle), good + 1, bad - 1);
     }
-    const auto fine = static_cast<double>(plan.triangles_after(good));
-    const auto coarse = static_cast<double>(plan.triangles_after(std::min(plan.size(), bad_prefix)));
-    if (bad_prefix <= good + 1 || fine - coarse <= 0.01 * coarse) break;
-    const auto middle = static_cast<std::size_t>(std::sqrt(fine * coarse));
-    probe = std::clamp(plan.prefix_for(middle), good + 1, bad_prefix - 1);
   }
-  if (!have || best.prefix != good) {
-    Result<Cut> cut = make_cut(plan, good, reference, options, task);
+};
+
+// The coarsest prefix found whose measured maximum is within `limit`, not finer than `start`: plain levels first,
+// within one per cent; then shaped ones from there on, within three, as each takes longer. Nothing within the limit:
+// the cut at `start` itself.
+Result<Cut> find_error_cut(LevelMaker& maker, std::size_t start, double limit, const Task& task) {
+  constexpr double kNear = 0.01, kNearShaped = 0.03, kStep = 0.6;
+  const CollapsePlan& plan = maker.plan();
+  const bool shapes = maker.effort() != Effort::fast;
+  const Task probes = task.part(shapes ? 0.3 : 0.9, "searching");
+  Search search{start, plan.size() + 1, kNear, {}};
+  const Result<void> found =
+      search.run(plan, limit, plan.size(), [&](std::size_t probe) { return maker.plain(probe, probes.part(0.1)); });
+  if (!found) return fail(found.error());
+  if (!search.best || search.best->prefix != search.good) {
+    Result<Cut> cut = maker.plain(search.good, task);
     if (!cut) return cut;
-    best = std::move(*cut);
-    simplify_seconds += best.simplify_seconds;
-    measure_seconds += best.measure_seconds;
+    search.simplify_seconds += cut->simplify_seconds;
+    search.measure_seconds += cut->measure_seconds;
+    search.best = std::move(*cut);
   }
-  best.simplify_seconds = simplify_seconds;
-  best.measure_seconds = measure_seconds;
-  best.level.seconds = simplify_seconds + measure_seconds;
+  if (shapes && search.good < plan.size() && search.best->level.error.measured_error <= limit) {
+    const Task shaping = task.part(0.7, "searching");
+    search.bad = plan.size() + 1;
+    search.nearness = kNearShaped;
+    // Steps by the same factor until one fails, then between the last two.
+    const auto make = [&](std::size_t probe) { return maker.shaped(probe, shaping.part(0.15)); };
+    std::size_t probe = search.good;
+    while (probe < plan.size() && search.bad > plan.size()) {
+      const double next = kStep * static_cast<double>(plan.triangles_after(probe));
+      probe = std::max(probe + 1, plan.prefix_for(static_cast<std::size_t>(next)));
+      probe = std::min(probe, plan.size());
+      Result<Cut> cut = make(probe);
+      if (!cut) return cut;
+      search.simplify_seconds += cut->simplify_seconds;
+      search.measure_seconds += cut->measure_seconds;
+      if (cut->level.error.measured_error <= limit) {
+        search.good = probe;
+        search.best = std::move(*cut);
+      } else {
+        search.bad = probe;
+      }
+    }
+    const double fine = static_cast<double>(plan.triangles_after(search.good));
+    const double coarse = static_cast<double>(plan.triangles_after(std::min(plan.size(), search.bad)));
+    if (search.bad <= plan.size() && search.bad > search.good + 1 && fine - coarse > kNearShaped * coarse) {
+      const auto middle = static_cast<std::size_t>(std::sqrt(fine * coarse));
+      const std::size_t first = std::clamp(plan.prefix_for(middle), search.good + 1, search.bad - 1);
+      if (const Result<void> ok = search.run(plan, limit, first, make); !ok) return fail(ok.error());
+    }
+  }
+  Cut best = std::move(*search.best);
+  best.simplify_seconds = search.simplify_seconds;
+  best.measure_seconds = search.measure_seconds;
+  best.level.seconds = best.simplify_seconds + best.measure_seconds;
   return best;
 }
 
@@ -151,8 +247,9 @@ void add_level(LadderResult& result, Cut cut) {
   result.ladder.levels.push_back(std::move(cut.level));
 }
 
-Result<void> add_count_levels(LadderResult& result, const CollapsePlan& plan, const std::vector<std::size_t>& targets,
-                              const Reference& reference, const LadderOptions& options, const Task& task) {
+Result<void> add_count_levels(LadderResult& result, LevelMaker& maker, const std::vector<std::size_t>& targets,
+                              const LadderOptions& options, const Task& task) {
+  const CollapsePlan& plan = maker.plan();
   std::size_t last = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const Task part = task.part(1.0 / static_cast<double>(targets.size()), fmt::format("level {}", i + 1));
@@ -163,7 +260,7 @@ Result<void> add_count_levels(LadderResult& result, const CollapsePlan& plan, co
     if (short_of) result.shortfalls.push_back({i + 1, count_shortfall(plan, targets[i], left)});
     const bool differs = prefix > last || (options.start && i == 0);  // what it starts from is a level already
     if (differs && (!short_of || shrinks)) {
-      Result<Cut> cut = make_cut(plan, prefix, reference, options.distance, part);
+      Result<Cut> cut = maker.shaped(prefix, part);
       if (!cut) return fail(cut.error());
       add_level(result, std::move(*cut));
       last = prefix;
@@ -175,12 +272,12 @@ Result<void> add_count_levels(LadderResult& result, const CollapsePlan& plan, co
   return {};
 }
 
-Result<void> add_error_levels(LadderResult& result, const CollapsePlan& plan, const Reference& reference,
-                              const LadderOptions& options, const Task& task) {
+Result<void> add_error_levels(LadderResult& result, LevelMaker& maker, const LadderOptions& options, const Task& task) {
+  const CollapsePlan& plan = maker.plan();
   std::size_t last = 0;
   for (std::size_t i = 0; i < options.errors.size(); ++i) {
     const Task part = task.part(1.0 / static_cast<double>(options.errors.size()), fmt::format("level {}", i + 1));
-    Result<Cut> cut = find_error_cut(plan, last, options.errors[i], reference, options.distance, part);
+    Result<Cut> cut = find_error_cut(maker, last, options.errors[i], part);
     if (!cut) return fail(cut.error());
     const bool holds = cut->level.error.measured_error <= options.errors[i];
     if (cut->prefix == last && !(options.start && i == 0 && holds)) {
@@ -269,9 +366,9 @@ Result<LadderResult> build_ladder(Model original, const LadderOptions& options, 
   result.measure_seconds = preparing.total();
   result.ladder.levels.push_back(detail::original_level(model, reference->diagonal()));
   const Task measuring = task.part(options.image ? 0.4 : 0.55, "measuring");
-  const Result<void> added = options.errors.empty()
-                                 ? add_count_levels(result, *plan, targets, *reference, options, measuring)
-                                 : add_error_levels(result, *plan, *reference, options, measuring);
+  LevelMaker maker(*plan, *reference, options.distance, options.effort);
+  const Result<void> added = options.errors.empty() ? add_count_levels(result, maker, targets, options, measuring)
+                                                    : add_error_levels(result, maker, options, measuring);
   if (!added) return fail(added.error());
   if (options.image) {
     const Result<void> compared =
@@ -299,9 +396,9 @@ Result<SimplifyModelResult> simplify_model(const Model& original, const Simplify
   if (!reference) return fail(reference.error());
   result.measure_seconds = preparing.total();
   const Task rest = task.part(0.4, "measuring");
-  Result<Cut> cut =
-      by_count ? make_cut(*plan, plan->prefix_for(options.target_triangles), *reference, options.distance, rest)
-               : find_error_cut(*plan, 0, options.max_error, *reference, options.distance, rest);
+  LevelMaker maker(*plan, *reference, options.distance, options.effort);
+  Result<Cut> cut = by_count ? maker.shaped(plan->prefix_for(options.target_triangles), rest)
+                             : find_error_cut(maker, 0, options.max_error, rest);
   if (!cut) return fail(cut.error());
   result.simplify_seconds += cut->simplify_seconds;
   result.measure_seconds += cut->measure_seconds;

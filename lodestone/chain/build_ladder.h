@@ -9,6 +9,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/chain/effort.h"
 #include "lodestone/chain/influence.h"
 #include "lodestone/core/level.h"
 #include "lodestone/measure/distance.h"
@@ -27,6 +28,7 @@ struct LadderOptions {
   std::vector<double> errors;          ///< measured maximum allowed, model units, one a coarser level, rising:
                                        ///< the coarsest mesh found within it, by bisection over one run's log
   Influence influence;                 ///< where the model matters more, what stays
+  Effort effort = Effort::fast;        ///< how much work each level is worth
   measure::DistanceOptions distance;   ///< samples and seed of the measurement
   /// What the coarser levels are collapsed from in place of the original, which they are measured against all the same:
   /// a surface made from it. It has one instance of one mesh, as the original must have.
@@ -51,13 +53,17 @@ struct LadderResult {
 
 /// Runs edge collapse once on every mesh, merges the collapses by error times the largest instance scale, cuts the
 /// levels from that one record and measures each in world space. A ladder that can't shrink further ends early, with a
-/// shortfall. Errors: bad_argument, empty (nothing drawn), cancelled.
+/// shortfall. With an effort above fast each level is shaped by its own measured error, and kept only if neither its
+/// maximum nor its mean (of normal: by more than a hundredth) is above the plain level's; it is no prefix of the record
+/// then, which its method tells, and an error is looked for with shaped levels. Errors: bad_argument, empty (nothing
+/// drawn), cancelled.
 Result<LadderResult> build_ladder(Model original, const LadderOptions& options = {}, Task task = {});
 
 struct SimplifyModelOptions {
   std::size_t target_triangles = 0;  ///< drawn triangles; 0 = no count target
   double max_error = 0;              ///< measured maximum, model units; 0 = no error target
   Influence influence;
+  Effort effort = Effort::fast;
   measure::DistanceOptions distance;
 };
 

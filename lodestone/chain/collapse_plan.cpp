@@ -54,6 +54,7 @@ Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t sma
       vertex_influences(working.meshes.empty() ? original : working, influence);
   if (!influences) return fail(influences.error());
   plan.working_ = std::move(working.meshes);
+  plan.options_.resize(original.meshes.size());
   plan.logs_.resize(original.meshes.size());
   plan.thin_.resize(original.meshes.size());
   const std::size_t all = std::max<std::size_t>(1, drawn_triangles(original));
@@ -72,7 +73,7 @@ Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t sma
 
 Result<void> CollapsePlan::plan_mesh(std::size_t m, std::size_t target, const Influence& influence,
                                      VertexInfluence told, const Task& task) {
-  simplify::EdgeCollapseOptions options;
+  simplify::EdgeCollapseOptions& options = options_[m];
   options.target_triangles = target;
   options.keep_border = influence.keep_border;
   options.weights = std::move(told.weights);
@@ -88,8 +89,8 @@ Result<void> CollapsePlan::plan_mesh(std::size_t m, std::size_t target, const In
   if (!influence.vanishes()) return {};
   simplify::ThinPartsOptions thin;
   thin.keep_area = influence.keep_area;
-  thin.weights = std::move(options.weights);
-  thin.locked = std::move(options.locked);
+  thin.weights = options.weights;
+  thin.locked = options.locked;
   if (influence.keep_border) lock_borders(mesh(m), thin.locked, task);
   thin.left_out = logs_[m].dropped;
   thin.metric = placings_[m];
@@ -237,12 +238,14 @@ Result<Mesh> CollapsePlan::mesh_after(std::size_t m, const Progress& progress, d
   if (keep_area_) {
     simplify::grow_parts(mesh(m), thin, area, error, placings_[m], replayed->origin, replayed->mesh);
   }
-  if (options.untouched.empty()) {
-    if (tangents_ == Tangents::dropped) drop_tangents(replayed->mesh);
-    if (tangents_ == Tangents::rebuilt) rebuild_tangents(replayed->mesh);
-    if (max_skin_influences_ > 0) limit_influences(replayed->mesh, max_skin_influences_);
-  }
+  if (options.untouched.empty()) finish(replayed->mesh);
   return std::move(replayed->mesh);
+}
+
+void CollapsePlan::finish(Mesh& mesh) const {
+  if (tangents_ == Tangents::dropped) drop_tangents(mesh);
+  if (tangents_ == Tangents::rebuilt) rebuild_tangents(mesh);
+  if (max_skin_influences_ > 0) limit_influences(mesh, max_skin_influences_);
 }
 
 // Parts drawn when nothing vanishes, of meshes that have several: one stays of each.

@@ -4,18 +4,24 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/chain/effort.h"
 #include "lodestone/chain/influence.h"
 #include "lodestone/core/collapse_log.h"
 #include "lodestone/core/model.h"
 #include "lodestone/simplify/edge_collapse.h"
+#include "lodestone/simplify/fit_target.h"
 #include "lodestone/simplify/thin_parts.h"
 
 namespace lodestone::chain::detail {
+
+/// One a mesh, made when it is needed.
+using FitTargets = std::vector<std::unique_ptr<simplify::FitTarget>>;
 
 class CollapsePlan {
  public:
@@ -34,6 +40,11 @@ class CollapsePlan {
   std::size_t prefix_for(std::size_t triangles) const;
   /// The model after a prefix; documents, instances and materials shared with the original. O(model).
   Result<Model> model_after(std::size_t count, Task task) const;
+
+  /// As model_after(), with every mesh that allows it shaped by its own measured error (shape_level()): those that are
+  /// drawn without being stretched, and of which no part vanishes and no triangle must stay. `targets` keeps what was
+  /// prepared for the next call; of this plan, empty at first.
+  Result<Model> shaped_after(std::size_t count, Effort effort, FitTargets& targets, Task task) const;
 
   const simplify::LockCounts& locked() const { return locked_; }
   /// Why the plan ends where it ends, in plain words.
@@ -63,14 +74,18 @@ class CollapsePlan {
   std::size_t drawn_parts() const;
   std::vector<Progress> progress_after(std::size_t count) const;
   Result<Mesh> mesh_after(std::size_t m, const Progress& progress, double error, const Task& task) const;
+  void finish(Mesh& mesh) const;
+  bool can_be_shaped(std::size_t m) const;
+  Result<Mesh> shaped(std::size_t m, Mesh plain, Effort effort, FitTargets& targets, const Task& task) const;
 
   const Model* original_ = nullptr;
-  std::vector<Mesh> working_;              // the meshes that the logs are about, where they are not the original's
-  std::vector<Mat4d> placings_;            // one a mesh: where its errors are judged
-  std::vector<std::uint32_t> uses_;        // how often each mesh is drawn
-  std::vector<CollapseLog> logs_;          // one a mesh; empty for a mesh that is not drawn
-  std::vector<simplify::ThinParts> thin_;  // one a mesh; empty unless parts may vanish
-  std::vector<std::vector<std::uint8_t>> untouched_;  // triangles of each mesh that must not change; empty = none
+  std::vector<Mesh> working_;        // the meshes that the logs are about, where they are not the original's
+  std::vector<Mat4d> placings_;      // one a mesh: where its errors are judged
+  std::vector<std::uint32_t> uses_;  // how often each mesh is drawn
+  std::vector<simplify::EdgeCollapseOptions> options_;  // one a mesh, of the run that made its log
+  std::vector<CollapseLog> logs_;                       // one a mesh; empty for a mesh that is not drawn
+  std::vector<simplify::ThinParts> thin_;               // one a mesh; empty unless parts may vanish
+  std::vector<std::vector<std::uint8_t>> untouched_;    // triangles of each mesh that must not change; empty = none
   std::vector<Step> steps_;
   std::vector<std::size_t> drawn_after_;  // size() + 1 entries, never rising
   simplify::LockCounts locked_;

@@ -4,7 +4,7 @@ import math
 from support import Scratch, run
 
 LEVEL = {"level", "triangles", "error", "relative_error", "error_kind", "switch_distance", "bytes", "file", "seconds",
-         "mean_error", "measured_error", "rms_error", "samples", "relative_mean_error"}
+         "mean_error", "measured_error", "rms_error", "samples", "relative_mean_error", "method"}
 
 
 class Json(Scratch):
@@ -40,6 +40,21 @@ class Json(Scratch):
         self.assertEqual((report["triangles_in"], report["stop_reason"]), (4000, "reached_target"))
         self.assertLessEqual(report["triangles"], 500)
         self.assertEqual(self.json("info", "a.ply")["triangles"], report["triangles"])
+        self.assertEqual(report["method"], "edge collapse")
+
+    def test_effort(self):
+        errors = {}
+        for effort in ("fast", "normal", "best"):
+            report = self.json("simplify", "statue.ply", "-o", "a.ply", "--triangles", "500", "--effort", effort)
+            errors[effort] = (report["measured_error"], report["mean_error"])
+        self.assertLessEqual(errors["normal"][0], errors["fast"][0])
+        self.assertLess(errors["best"][0], errors["fast"][0])
+        self.assertLess(errors["best"][1], errors["fast"][1])
+        # An error target and a ladder have normal without being asked.
+        given = self.json("simplify", "statue.ply", "-o", "a.ply", "--error", "1%", "--effort", "normal")
+        self.assertEqual(given["triangles"], self.json("simplify", "statue.ply", "-o", "a.ply", "--error", "1%")["triangles"])
+        self.assert_error(self.lod("simplify", "statue.ply", "-o", "a.ply", "--triangles", "500", "--effort", "all", code=2),
+                          "--effort")
 
     def test_measure(self):
         self.lod("simplify", "statue.ply", "-o", "a.ply", "--triangles", "500")

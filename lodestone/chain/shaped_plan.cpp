@@ -1,0 +1,73 @@
+// The part of CollapsePlan that shapes levels by their own measured error.
+#include <algorithm>
+#include <cmath>
+
+#include "lodestone/chain/collapse_plan_detail.h"
+#include "lodestone/chain/feedback_detail.h"
+
+namespace lodestone::chain::detail {
+
+namespace {
+
+// A weighted run starts from a level of so many times the triangles: it is as good as the original there, and faster.
+constexpr std::size_t kFiner = 6;
+
+// Distances in mesh space and in the scene differ by a factor alone.
+bool is_similarity(const Mat4d& placing) {
+  const Vec3d x = placing.direction({1, 0, 0}), y = placing.direction({0, 1, 0}), z = placing.direction({0, 0, 1});
+  const double a = length_sq(x), b = length_sq(y), c = length_sq(z), slack = 1e-6 * a;
+  return a > 0 && std::abs(a - b) <= slack && std::abs(a - c) <= slack && std::abs(dot(x, y)) <= slack &&
+         std::abs(dot(y, z)) <= slack && std::abs(dot(z, x)) <= slack;
+}
+
+std::vector<Vec3f> places_of(const Mesh& mesh, const std::vector<std::uint8_t>& marked) {
+  std::vector<Vec3f> places;
+  for (std::size_t v = 0; v < marked.size(); ++v) {
+    if (marked[v] != 0) places.push_back(mesh.positions[v]);
+  }
+  std::sort(places.begin(), places.end(), before);
+  return places;
+}
+
+}  // namespace
+
+bool CollapsePlan::can_be_shaped(std::size_t m) const {
+  return logs_[m].start_triangles > 0 && untouched_.empty() && !prunes_ && is_similarity(placings_[m]);
+}
+
+Result<Mesh> CollapsePlan::shaped(std::size_t m, Mesh plain, Effort effort, FitTargets& targets,
+                                  const Task& task) const {
+  const CollapseLog& log = logs_[m];
+  const std::size_t triangles = plain.triangles.size();
+  if (triangles == 0 || triangles >= log.start_triangles) return plain;
+  targets.resize(logs_.size());
+  if (targets[m] == nullptr) targets[m] = std::make_unique<simplify::FitTarget>(mesh(m), task);
+  const simplify::EdgeCollapseOptions& options = options_[m];
+  Mesh finer;
+  const bool weighs = !options.weights.empty();  // weights are about the vertices of the original
+  if (effort == Effort::normal && !weighs && kFiner * triangles < log.start_triangles) {
+    Result<ReplayResult> replayed = replay(mesh(m), log, log.prefix_for(kFiner * triangles), task);
+    if (!replayed) return fail(replayed.error());
+    finer = std::move(replayed->mesh);
+  }
+  const ShapeSource source{finer.triangles.empty() ? mesh(m) : finer, *targets[m], options,
+                           places_of(mesh(m), options.locked)};
+  Result<Mesh> made = shape_level(source, std::move(plain), effort, task);
+  if (made) finish(*made);
+  return made;
+}
+
+Result<Model> CollapsePlan::shaped_after(std::size_t count, Effort effort, FitTargets& targets, Task task) const {
+  Result<Model> model = model_after(count, task.part(0.1));
+  if (!model || effort == Effort::fast) return model;
+  const double share = 0.9 / static_cast<double>(std::max<std::size_t>(1, logs_.size()));
+  for (std::size_t m = 0; m < logs_.size(); ++m) {
+    if (!can_be_shaped(m)) continue;
+    Result<Mesh> made = shaped(m, std::move(model->meshes[m]), effort, targets, task.part(share));
+    if (!made) return fail(made.error());
+    model->meshes[m] = std::move(*made);
+  }
+  return model;
+}
+
+}  // namespace lodestone::chain::detail

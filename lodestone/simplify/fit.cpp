@@ -1,0 +1,153 @@
+#include "lodestone/simplify/fit.h"
+
+#include <algorithm>
+
+#include "lodestone/core/adjacency.h"
+#include "lodestone/simplify/fit_attributes_detail.h"
+#include "lodestone/simplify/fit_flip_detail.h"
+#include "lodestone/simplify/fit_solve_detail.h"
+#include "lodestone/simplify/fit_ties_detail.h"
+
+namespace lodestone::simplify {
+
+namespace {
+
+constexpr double kDamping = 0.002;
+constexpr double kSuspect = 0.35;  // of the maximum: triangles above it are looked at closely
+
+// For each vertex of the surface, that of the mesh.
+std::vector<std::uint32_t> mesh_vertices(const Mesh& mesh, const spatial::Surface& surface) {
+  std::vector<std::uint32_t> of(surface.positions.size(), kNone);
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const Triangle own = mesh.vertices_of(surface.drawn[t]);
+    for (std::size_t k = 0; k < 3; ++k) of[surface.triangles[t][k]] = own[k];
+  }
+  return of;
+}
+
+// Sides that do not join exactly two triangles the same way, with the same wedges and material; vertices of the mesh.
+detail::FixedSides fixed_sides(const Mesh& mesh, const Task& task) {
+  detail::FixedSides fixed;
+  const EdgeTriangles edges = edge_triangles(mesh, task);
+  for (const Edge& edge : edges.edges) {
+    bool inner = edge.count == 2;
+    if (inner) {
+      const auto around = edges.of(edge);
+      inner = mesh.group_of(around[0]) == mesh.group_of(around[1]);
+      // The wedges at both ends, and which way each triangle walks the edge.
+      std::uint32_t wedge[2][2] = {};
+      bool forward[2] = {};
+      for (std::size_t i = 0; i < 2; ++i) {
+        const Triangle& w = mesh.triangles[around[i]];
+        for (std::size_t k = 0; k < 3; ++k) {
+          if (mesh.vertex_of(w[k]) == edge.a) {
+            wedge[i][0] = w[k];
+            forward[i] = mesh.vertex_of(w[(k + 1) % 3]) == edge.b;
+          }
+          if (mesh.vertex_of(w[k]) == edge.b) wedge[i][1] = w[k];
+        }
+      }
+      inner = inner && wedge[0][0] == wedge[1][0] && wedge[0][1] == wedge[1][1] && forward[0] != forward[1];
+    }
+    if (!inner) fixed.emplace_back(edge.a, edge.b);
+  }
+  return fixed;
+}
+
+bool has_look(const Mesh& mesh) {
+  return std::any_of(mesh.attributes.begin(), mesh.attributes.end(), [](const AttributeStream& stream) {
+    return stream.semantic == Semantic::uv || stream.semantic == Semantic::color;
+  });
+}
+
+}  // namespace
+
+struct FittedLevel::State {
+  const FitTarget& target;
+  Mesh mesh;
+  detail::Known known;                     // the mesh's surface and its ties
+  std::vector<std::uint32_t> mesh_vertex;  // of the surface's vertices
+
+  State(const FitTarget& to, Mesh level, const Task& task, const detail::Known* before)
+      : target(to), mesh(std::move(level)) {
+    known.level = surface_of(mesh, task);
+    known.ties = detail::make_ties(target, known.level, task, before);
+    detail::look_at_worst(target, known.level, kSuspect, known.ties, task);
+    mesh_vertex = mesh_vertices(mesh, known.level);
+  }
+};
+
+FittedLevel::FittedLevel(const FitTarget& target, Mesh level, const Task& task, const FittedLevel* known)
+    : state_(std::make_unique<State>(target, std::move(level), task,
+                                     known != nullptr ? &known->state_->known : nullptr)) {}
+FittedLevel::FittedLevel(const FittedLevel& other) : state_(std::make_unique<State>(*other.state_)) {}
+FittedLevel& FittedLevel::operator=(const FittedLevel& other) {
+  state_ = std::make_unique<State>(*other.state_);
+  return *this;
+}
+FittedLevel::FittedLevel(FittedLevel&&) noexcept = default;
+FittedLevel& FittedLevel::operator=(FittedLevel&&) noexcept = default;
+FittedLevel::~FittedLevel() = default;
+
+const Mesh& FittedLevel::mesh() const { return state_->mesh; }
+double FittedLevel::mean() const { return state_->known.ties.mean; }
+double FittedLevel::max() const { return state_->known.ties.max; }
+
+std::vector<FittedLevel::Worst> FittedLevel::worst() const {
+  std::vector<Worst> out(state_->mesh.triangles.size());
+  const detail::Known& known = state_->known;
+  for (std::size_t t = 0; t < known.ties.worst.size(); ++t) {
+    const detail::Worst& w = known.ties.worst[t];
+    out[known.level.drawn[t]] = {static_cast<double>(w.distance), static_cast<double>(w.second),
+                                 static_cast<double>(w.third), w.partner};
+  }
+  return out;
+}
+
+void FittedLevel::fit(const FitOptions& options, const Task& task) {
+  Mesh& mesh = state_->mesh;
+  detail::Known& known = state_->known;
+  const FitTarget& target = state_->target;
+  if (known.ties.list.empty()) return;
+  std::vector<std::uint32_t> surface_vertex(mesh.vertex_count(), kNone);
+  for (std::uint32_t v = 0; v < state_->mesh_vertex.size(); ++v) surface_vertex[state_->mesh_vertex[v]] = v;
+  std::vector<std::uint8_t> held;
+  for (const std::uint32_t v : state_->mesh_vertex) held.push_back(options.locked.empty() ? 0 : options.locked[v]);
+  detail::FixedSides fixed;
+  for (const auto& [a, b] : fixed_sides(mesh, task)) {
+    const std::uint32_t x = surface_vertex[a], y = surface_vertex[b];
+    held[x] = held[y] = 1;
+    fixed.emplace_back(std::min(x, y), std::max(x, y));
+  }
+  std::sort(fixed.begin(), fixed.end());
+  std::vector<Triangle> wedges;
+  for (const std::uint32_t t : known.level.drawn) wedges.push_back(mesh.triangles[t]);
+  const bool flips = options.flips && !has_look(mesh);
+  for (int solve = 0; solve < options.solves && !task.cancelled(); ++solve) {
+    detail::Known before = known;
+    const std::vector<Triangle> wedges_before = wedges;
+    if (flips && solve > 0) {
+      detail::retie(target, known.level, detail::flip_edges(target, known.ties, fixed, known.level, wedges, task),
+                    known.ties, task);
+    }
+    const detail::CornersAt around = detail::corners_at(known.level);
+    detail::take_moves(known.level, around, detail::solve_moves(known.level, known.ties, around, held, kDamping, task),
+                       task);
+    for (Vec3d& p : known.level.positions) p = to_double(to_float(p - mesh.offset)) + mesh.offset;
+    known.ties = detail::make_ties(target, known.level, task, options.locked.empty() ? nullptr : &before);
+    if (!(known.ties.energy < before.ties.energy)) {
+      known = std::move(before);
+      wedges = wedges_before;
+      break;
+    }
+  }
+  detail::look_at_worst(target, known.level, kSuspect, known.ties, task);
+  const std::vector<Vec3f> positions_before = mesh.positions;
+  for (std::size_t v = 0; v < state_->mesh_vertex.size(); ++v) {
+    mesh.positions[state_->mesh_vertex[v]] = to_float(known.level.positions[v] - mesh.offset);
+  }
+  for (std::size_t t = 0; t < wedges.size(); ++t) mesh.triangles[known.level.drawn[t]] = wedges[t];
+  detail::carry_attributes(target, positions_before, mesh, task);
+}
+
+}  // namespace lodestone::simplify

@@ -1,0 +1,55 @@
+// Fitting: vertices of a level moved to where it is nearest to its original, and edges turned over.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "lodestone/base/task.h"
+#include "lodestone/core/mesh.h"
+#include "lodestone/simplify/fit_target.h"
+
+namespace lodestone::simplify {
+
+struct FitOptions {
+  int solves = 6;                    ///< how often vertices are moved and all partners found again
+  bool flips = true;                 ///< turn edges over, too; not where textures or colours would change their course
+  std::vector<std::uint8_t> locked;  ///< one a vertex of the level, non-zero = stays; empty = none
+};
+
+/// A level with what is known of its distance from its target: judged at the target's points and at points of the
+/// level, the worst places looked at closely. An estimate: the figure to tell comes from `measure`.
+class FittedLevel {
+ public:
+  /// The largest distance found at a triangle: where on it (weights of its second and third corner), and the point of
+  /// the original there.
+  struct Worst {
+    double distance = 0, second = 0, third = 0;
+    Vec3d partner;
+  };
+
+  /// Measures a level. Where it has triangles in common with one that is known, only what the others change is measured
+  /// anew. O(n log n). The target must outlive it.
+  FittedLevel(const FitTarget& target, Mesh level, const Task& task, const FittedLevel* known = nullptr);
+  FittedLevel(const FittedLevel& other);
+  FittedLevel& operator=(const FittedLevel& other);
+  FittedLevel(FittedLevel&&) noexcept;
+  FittedLevel& operator=(FittedLevel&&) noexcept;
+  ~FittedLevel();
+
+  const Mesh& mesh() const;
+  double mean() const;  ///< of both directions, mesh units
+  double max() const;
+  std::vector<Worst> worst() const;  ///< one a triangle of the mesh
+
+  /// Moves vertices; borders, seams, borders of materials, and what is not manifold stay. Source: Hoppe et al., "Mesh
+  /// optimization", SIGGRAPH 1993, with distances both ways. Stops early where nothing is gained, so the mean square is
+  /// never above the start's. O(solves * n log n); where much is locked, only what moves is measured again.
+  void fit(const FitOptions& options, const Task& task);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lodestone::simplify

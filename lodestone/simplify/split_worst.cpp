@@ -1,0 +1,172 @@
+#include "lodestone/simplify/split_worst.h"
+
+#include <algorithm>
+#include <array>
+
+#include "lodestone/core/adjacency.h"
+#include "lodestone/core/blend.h"
+
+namespace lodestone::simplify {
+
+namespace {
+
+// A wedge of a new vertex, with the values of another.
+std::uint32_t add_wedge(Mesh& mesh, std::uint32_t vertex, std::uint32_t from) {
+  const std::uint32_t wedge = mesh.wedge_vertex.empty() ? vertex : static_cast<std::uint32_t>(mesh.wedge_vertex.size());
+  if (!mesh.wedge_vertex.empty()) mesh.wedge_vertex.push_back(vertex);
+  for (AttributeStream& stream : mesh.attributes) {
+    std::visit(
+        [&](auto& values) {
+          for (std::uint32_t c = 0; c < stream.components; ++c) {
+            const auto value = values[std::size_t{from} * stream.components + c];
+            values.push_back(value);
+          }
+        },
+        stream.values);
+  }
+  return wedge;
+}
+
+constexpr double kPull = 0.5;
+constexpr double kNearSide = 0.15;  // a corner's weight below which the place is on the side across
+
+// A new vertex on a side or within a triangle: wedge `own` becomes its values, step by step.
+struct Mix {
+  std::uint32_t own, other;
+  float share;
+};
+
+class Splitter {
+ public:
+  Splitter(const FittedLevel& level, const Task& task)
+      : mesh_(level.mesh()),
+        edges_(edge_triangles(mesh_, task)),
+        touched_(mesh_.triangles.size(), 0),
+        pulled_(mesh_.vertex_count(), 0),
+        at_border_(mesh_.vertex_count(), 0) {
+    for (const Edge& edge : edges_.edges) {
+      if (edge.count != 2) at_border_[edge.a] = at_border_[edge.b] = 1;
+    }
+  }
+
+  // How many triangles were added.
+  std::size_t split(std::uint32_t t, const FittedLevel::Worst& worst) {
+    if (touched_[t] != 0) return 0;
+    const double weights[3] = {1 - worst.second - worst.third, worst.second, worst.third};
+    const auto corner = static_cast<std::size_t>(std::min_element(weights, weights + 3) - weights);
+    const std::size_t next = (corner + 1) % 3, last = (corner + 2) % 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (weights[k] > 1 - kNearSide) return pull_in(mesh_.vertex_of(mesh_.triangles[t][k]), worst);
+    }
+    if (weights[corner] > kNearSide) return split_face(t, worst);
+    const double both = weights[next] + weights[last];
+    return split_side(t, next, both > 0 ? weights[last] / both : 0.5, worst.partner);
+  }
+
+  SplitResult finish() {
+    AttributeBlender blender(mesh_.attributes);
+    for (const Mix& mix : mixes_) blender.blend(mix.own, mix.other, mix.share);
+    return {std::move(mesh_), std::move(moved_)};
+  }
+
+ private:
+  std::uint32_t add_vertex(Vec3d place) {
+    const auto vertex = static_cast<std::uint32_t>(mesh_.positions.size());
+    mesh_.positions.push_back(to_float(place - mesh_.offset));
+    return vertex;
+  }
+  void add_triangle(const Triangle& wedges, std::uint32_t like) {
+    mesh_.triangles.push_back(wedges);
+    if (!mesh_.face_group.empty()) mesh_.face_group.push_back(mesh_.face_group[like]);
+  }
+
+  // A vertex that sticks out goes half of the way.
+  std::size_t pull_in(std::uint32_t vertex, const FittedLevel::Worst& worst) {
+    if (pulled_[vertex] != 0 || at_border_[vertex] != 0) return 0;
+    pulled_[vertex] = 1;
+    mesh_.positions[vertex] = to_float(lerp(mesh_.position(vertex), worst.partner, kPull) - mesh_.offset);
+    moved_.push_back(mesh_.positions[vertex]);
+    return 1;
+  }
+
+  std::size_t split_face(std::uint32_t t, const FittedLevel::Worst& worst) {
+    touched_[t] = 1;
+    const Triangle w = mesh_.triangles[t];
+    const std::uint32_t wedge = add_wedge(mesh_, add_vertex(worst.partner), w[0]);
+    const double first_two = 1 - worst.third;
+    mixes_.push_back({wedge, w[1], static_cast<float>(first_two > 0 ? worst.second / first_two : 0)});
+    mixes_.push_back({wedge, w[2], static_cast<float>(worst.third)});
+    mesh_.triangles[t] = {w[0], w[1], wedge};
+    add_triangle({w[1], w[2], wedge}, t);
+    add_triangle({w[2], w[0], wedge}, t);
+    return 2;
+  }
+
+  // Side k of a triangle, at this share of the way to its end.
+  std::size_t split_side(std::uint32_t t, std::size_t k, double share, Vec3d place) {
+    const Triangle v = mesh_.vertices_of(t);
+    const std::uint32_t begin = v[k], end = v[(k + 1) % 3];
+    const auto [a, b] = std::minmax(begin, end);
+    const auto found = std::lower_bound(edges_.edges.begin(), edges_.edges.end(), std::pair{a, b},
+                                        [](const Edge& e, const auto& side) {
+                                          return std::pair{e.a, e.b} < side;
+                                        });
+    if (found == edges_.edges.end() || found->a != a || found->b != b || found->count != 2) return 0;
+    const auto around = edges_.of(*found);
+    for (const std::uint32_t u : around) {
+      if (touched_[u] != 0) return 0;
+    }
+    const std::uint32_t vertex = add_vertex(place);
+    std::uint32_t made[2][3] = {};  // wedge, from, to
+    std::size_t count = 0;
+    for (const std::uint32_t u : around) {
+      touched_[u] = 1;
+      const Triangle w = mesh_.triangles[u];
+      std::size_t side = 0;
+      while (std::minmax(mesh_.vertex_of(w[side]), mesh_.vertex_of(w[(side + 1) % 3])) != std::minmax(a, b)) ++side;
+      const std::uint32_t from = w[side], to = w[(side + 1) % 3], third = w[(side + 2) % 3];
+      std::uint32_t wedge = kNone;
+      for (std::size_t i = 0; i < count; ++i) {
+        if (std::minmax(made[i][1], made[i][2]) == std::minmax(from, to)) wedge = made[i][0];
+      }
+      if (wedge == kNone) {
+        wedge = add_wedge(mesh_, vertex, from);
+        mixes_.push_back({wedge, to, static_cast<float>(mesh_.vertex_of(from) == begin ? share : 1 - share)});
+        made[count][0] = wedge;
+        made[count][1] = from;
+        made[count++][2] = to;
+      }
+      mesh_.triangles[u] = {from, wedge, third};
+      add_triangle({wedge, to, third}, u);
+    }
+    return 2;
+  }
+
+  Mesh mesh_;
+  EdgeTriangles edges_;  // of the level as it was
+  std::vector<std::uint8_t> touched_;
+  std::vector<std::uint8_t> pulled_, at_border_;  // of the level's vertices
+  std::vector<Vec3f> moved_;
+  std::vector<Mix> mixes_;
+};
+
+}  // namespace
+
+SplitResult split_worst(const FittedLevel& level, double share, std::size_t most, const Task& task) {
+  const std::vector<FittedLevel::Worst> worst = level.worst();
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t t = 0; t < worst.size(); ++t) {
+    if (worst[t].distance > share * level.max()) order.push_back(t);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return worst[a].distance > worst[b].distance; });
+  Splitter splitter(level, task);
+  std::size_t added = 0;
+  for (const std::uint32_t t : order) {
+    if (added >= most) break;
+    added += splitter.split(t, worst[t]);
+  }
+  return splitter.finish();
+}
+
+}  // namespace lodestone::simplify

@@ -1,0 +1,24 @@
+// More triangles where a level is worst.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "lodestone/base/task.h"
+#include "lodestone/core/mesh.h"
+#include "lodestone/simplify/fit.h"
+
+namespace lodestone::simplify {
+
+struct SplitResult {
+  Mesh mesh;
+  std::vector<Vec3f> pulled;  ///< where vertices are now that have been pulled in
+};
+
+/// Adds a vertex where a triangle is worst and puts it on the original there, worst triangles first, those whose worst
+/// distance is above `share` of the maximum, no triangle twice, until `most` triangles have been added: within the
+/// triangle, or on its side where the place is near one. Where it is a vertex, as of those that stick out of bulges,
+/// that goes half way to the original. Attributes are those of the level at the place. O(n log n).
+SplitResult split_worst(const FittedLevel& level, double share, std::size_t most, const Task& task);
+
+}  // namespace lodestone::simplify

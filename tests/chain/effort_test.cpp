@@ -1,0 +1,136 @@
+#include "lodestone/chain/effort.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lodestone/chain/build_ladder.h"
+#include "lodestone/core/topology.h"
+#include "support/shapes.h"
+
+namespace lodestone::chain {
+namespace {
+
+Model bumpy(int rings) {
+  Mesh mesh = test::sphere(rings);
+  for (Vec3f& p : mesh.positions) {
+    p = p * (1 + 0.1F * std::sin(7 * p.x) * std::sin(6 * p.y + 1) * std::sin(5 * p.z + 2));
+  }
+  return make_model(std::move(mesh));
+}
+
+SimplifyModelResult simplified(const Model& model, SimplifyModelOptions options, Effort effort, int threads = 0) {
+  options.effort = effort;
+  options.distance.samples = 20'000;
+  auto made = simplify_model(model, options, Task::root({}, threads));
+  EXPECT_TRUE(made) << made.error().what;
+  return std::move(*made);
+}
+
+SimplifyModelOptions to_triangles(std::size_t triangles) {
+  SimplifyModelOptions options;
+  options.target_triangles = triangles;
+  return options;
+}
+
+TEST(Effort, is_never_worse_and_worth_it) {
+  const Model model = bumpy(60);
+  const SimplifyModelResult fast = simplified(model, to_triangles(700), Effort::fast);
+  const SimplifyModelResult normal = simplified(model, to_triangles(700), Effort::normal);
+  const SimplifyModelResult best = simplified(model, to_triangles(700), Effort::best);
+  EXPECT_EQ(fast.level.method, "edge collapse");
+  EXPECT_LE(normal.level.error.measured_error, fast.level.error.measured_error);
+  EXPECT_LE(normal.level.error.mean_error, 1.01 * fast.level.error.mean_error);
+  EXPECT_LT(best.level.error.measured_error, 0.9 * fast.level.error.measured_error);
+  EXPECT_LT(best.level.error.mean_error, 0.95 * fast.level.error.mean_error);
+  EXPECT_EQ(best.level.method, "edge collapse, fitted by its error");
+  for (const SimplifyModelResult* r : {&fast, &normal, &best}) {
+    EXPECT_LE(r->level.triangles, 700U);
+    const Topology t = topology_of(r->level.model.meshes.front());
+    EXPECT_TRUE(t.closed && t.manifold);
+  }
+}
+
+TEST(Effort, needs_fewer_triangles_for_an_error) {
+  const Model model = bumpy(60);
+  SimplifyModelOptions options;
+  options.max_error = 0.01;
+  const SimplifyModelResult fast = simplified(model, options, Effort::fast);
+  const SimplifyModelResult best = simplified(model, options, Effort::best);
+  EXPECT_LE(best.level.error.measured_error, 0.01);
+  EXPECT_LT(best.level.triangles, 0.9 * static_cast<double>(fast.level.triangles));
+}
+
+TEST(Effort, has_the_same_bytes_for_any_thread_count) {
+  const Model model = bumpy(50);
+  for (const Effort effort : {Effort::normal, Effort::best}) {
+    const SimplifyModelResult one = simplified(model, to_triangles(400), effort, 1);
+    for (const int threads : {2, 7}) {
+      const SimplifyModelResult more = simplified(model, to_triangles(400), effort, threads);
+      EXPECT_EQ(one.level.model.meshes[0].positions, more.level.model.meshes[0].positions);
+      EXPECT_EQ(one.level.model.meshes[0].triangles, more.level.model.meshes[0].triangles);
+    }
+  }
+}
+
+TEST(Effort, keeps_locked_vertices_and_borders) {
+  Model model = make_model(test::grid(40, 0.1F));
+  SimplifyModelOptions options = to_triangles(400);
+  options.influence.keep_border = true;
+  options.influence.spheres.push_back({{0.5, 0.5, 0}, 0.2, 1, true});
+  const SimplifyModelResult best = simplified(model, options, Effort::best);
+  const Mesh& mesh = best.level.model.meshes.front();
+  std::size_t border = 0, locked = 0;
+  for (const Vec3f& p : model.meshes[0].positions) {
+    const bool on_border = p.x <= 0 || p.x >= 1 || p.y <= 0 || p.y >= 1;
+    const bool in_sphere = length(to_double(p) - Vec3d{0.5, 0.5, 0}) < 0.2;
+    if (!on_border && !in_sphere) continue;
+    (on_border ? border : locked) += 1;
+    EXPECT_NE(std::find(mesh.positions.begin(), mesh.positions.end(), p), mesh.positions.end());
+  }
+  EXPECT_GT(border, 0U);
+  EXPECT_GT(locked, 0U);
+}
+
+TEST(Effort, of_what_is_broken_is_no_worse) {
+  for (const Mesh& mesh : {test::moebius(60), test::soup(7, 200, 400), test::grid(20), test::offset_plates(12),
+                           test::three_faces_on_an_edge(), test::canopy(30)}) {
+    const Model model = make_model(mesh);
+    const std::size_t half = std::max<std::size_t>(1, mesh.triangles.size() / 2);
+    const SimplifyModelResult fast = simplified(model, to_triangles(half), Effort::fast);
+    for (const Effort effort : {Effort::normal, Effort::best}) {
+      const SimplifyModelResult shaped = simplified(model, to_triangles(half), effort);
+      EXPECT_LE(shaped.level.error.measured_error, fast.level.error.measured_error);
+      EXPECT_LE(shaped.level.error.mean_error, 1.01 * fast.level.error.mean_error);
+      EXPECT_LE(shaped.level.triangles, fast.level.triangles);
+    }
+  }
+}
+
+TEST(Effort, ladders_stay_in_order) {
+  LadderOptions options;
+  options.distance.samples = 20'000;
+  for (const Effort effort : {Effort::normal, Effort::best}) {
+    options.effort = effort;
+    const auto made = build_ladder(bumpy(60), options);
+    ASSERT_TRUE(made);
+    const auto& levels = made->ladder.levels;
+    for (std::size_t i = 1; i < levels.size(); ++i) {
+      EXPECT_GE(levels[i].error.error, levels[i - 1].error.error);
+      EXPECT_GE(levels[i].error.measured_error, levels[i - 1].error.measured_error) << "no level worse than the next";
+    }
+  }
+}
+
+TEST(Effort, can_be_cancelled) {
+  const Task task = Task::root({});
+  task.cancel();
+  SimplifyModelOptions options = to_triangles(100);
+  options.effort = Effort::best;
+  const auto made = simplify_model(bumpy(20), options, task);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::cancelled);
+}
+
+}  // namespace
+}  // namespace lodestone::chain
