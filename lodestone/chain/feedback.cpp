@@ -27,8 +27,8 @@ constexpr double kMeanSlack = 1.01;  // the mean may rise by a hundredth for a s
 constexpr int kWeightedRounds = 2;
 
 // Equalizing rounds: how many at most, and how many without a smaller maximum end them.
-constexpr int kRounds = 10;
-constexpr int kIdleRounds = 3;
+constexpr int kRounds = 14;
+constexpr int kIdleRounds = 4;
 constexpr double kSplit = 0.75;        // of the maximum: triangles above it are split
 constexpr double kSplitShare = 0.004;  // of all triangles that may be added a round
 constexpr double kRoundsMean = 1.03;   // how far the mean may rise over the fitted one's

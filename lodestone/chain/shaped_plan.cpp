@@ -41,7 +41,9 @@ Result<Mesh> CollapsePlan::shaped(std::size_t m, Mesh plain, Effort effort, FitT
   const std::size_t triangles = plain.triangles.size();
   if (triangles == 0 || triangles >= log.start_triangles) return plain;
   targets.resize(logs_.size());
-  if (targets[m] == nullptr) targets[m] = std::make_unique<simplify::FitTarget>(mesh(m), task);
+  if (targets[m] == nullptr) {
+    targets[m] = std::make_unique<simplify::FitTarget>(mesh(m), task, effort == Effort::best);
+  }
   const simplify::EdgeCollapseOptions& options = options_[m];
   Mesh finer;
   const bool weighs = !options.weights.empty();  // weights are about the vertices of the original

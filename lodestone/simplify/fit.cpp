@@ -13,7 +13,7 @@ namespace lodestone::simplify {
 namespace {
 
 constexpr double kDamping = 0.002;
-constexpr double kSuspect = 0.35;  // of the maximum: triangles above it are looked at closely
+constexpr double kSuspect = 0.4;  // of the maximum: triangles above it are looked at closely
 
 // For each vertex of the surface, that of the mesh.
 std::vector<std::uint32_t> mesh_vertices(const Mesh& mesh, const spatial::Surface& surface) {
@@ -127,7 +127,7 @@ void FittedLevel::fit(const FitOptions& options, const Task& task) {
     detail::Known before = known;
     const std::vector<Triangle> wedges_before = wedges;
     if (flips && solve > 0) {
-      detail::retie(target, known.level, detail::flip_edges(target, known.ties, fixed, known.level, wedges, task),
+      detail::retie(target, known.level, detail::flip_edges(target, known.ties, fixed, held, known.level, wedges, task),
                     known.ties, task);
     }
     const detail::CornersAt around = detail::corners_at(known.level);

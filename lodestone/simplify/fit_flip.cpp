@@ -143,7 +143,8 @@ void turn(const Quad& q, std::vector<Triangle>& triangles) {
 }  // namespace
 
 std::vector<TrianglePair> flip_edges(const FitTarget& target, const Ties& ties, const FixedSides& fixed,
-                                     spatial::Surface& level, std::vector<Triangle>& wedges, const Task& task) {
+                                     std::span<const std::uint8_t> held, spatial::Surface& level,
+                                     std::vector<Triangle>& wedges, const Task& task) {
   const Neighbors neighbors = spatial::triangle_neighbors(level);
   const CornersAt around = corners_at(level);
   double area = 0;
@@ -159,6 +160,7 @@ std::vector<TrianglePair> flip_edges(const FitTarget& target, const Ties& ties, 
         const std::uint32_t other = neighbors[t][k];
         if (other == kNone || other < t) continue;
         const Quad q = quad_of(level, static_cast<std::uint32_t>(t), k, other);
+        if (held[q.a] != 0 && held[q.b] != 0 && held[q.c] != 0 && held[q.d] != 0) continue;
         if (q.c == q.d || std::binary_search(fixed.begin(), fixed.end(), std::minmax({q.a, q.b}))) continue;
         gains[t][k] = static_cast<float>(gain_of(target, ties, level, neighbors, q, area));
       }

@@ -112,7 +112,10 @@ std::vector<Vec3d> solve_moves(const spatial::Surface& level, const Ties& ties, 
   const std::size_t n = level.positions.size();
   std::vector<Element> elements(level.triangles.size());
   parallel_for(elements.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t t = begin; t < end; ++t) elements[t] = element_of(level, ties, t);
+    for (std::size_t t = begin; t < end; ++t) {
+      const Triangle& v = level.triangles[t];
+      if (held[v[0]] == 0 || held[v[1]] == 0 || held[v[2]] == 0) elements[t] = element_of(level, ties, t);
+    }
   });
   const auto for_vertices = [&](auto&& body) {
     parallel_for(n, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {

@@ -17,22 +17,23 @@ spatial::Surface surface_of(const Mesh& mesh, const Task& task) {
   return surface ? std::move(*surface) : spatial::Surface();
 }
 
-FitTarget::FitTarget(const Mesh& original, const Task& task)
+FitTarget::FitTarget(const Mesh& original, const Task& task, bool centres)
     : original_(&original), surface_(surface_of(original, task)), tree_(surface_, task) {
   const std::size_t n = surface_.positions.size(), triangles = surface_.triangles.size();
   points_ = surface_.positions;
-  points_.reserve(n + triangles);
-  std::vector<double> areas(n + triangles, 0.0);
+  const std::size_t count = n + (centres ? triangles : 0);
+  points_.reserve(count);
+  std::vector<double> areas(count, 0.0);
   double sum = 0;
   for (std::size_t t = 0; t < triangles; ++t) {
     const auto [a, b, c] = surface_.corners(t);
-    points_.push_back((a + b + c) / 3.0);
+    if (centres) points_.push_back((a + b + c) / 3.0);
     const double area = length(scaled_normal(a, b, c)) / 2;
     if (!(area >= 0)) continue;
     sum += area;
     // With three fourths for the centre and the rest for the corners, sums of quadratic functions are exact.
-    for (const std::uint32_t v : surface_.triangles[t]) areas[v] += area / 12;
-    areas[n + t] = area * 3 / 4;
+    for (const std::uint32_t v : surface_.triangles[t]) areas[v] += centres ? area / 12 : area / 3;
+    if (centres) areas[n + t] = area * 3 / 4;
   }
   weights_.reserve(areas.size());
   for (const double area : areas) weights_.push_back(sum > 0 ? static_cast<float>(area / sum) : 0.0F);

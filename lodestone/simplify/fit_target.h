@@ -11,12 +11,13 @@
 
 namespace lodestone::simplify {
 
-/// A mesh's surface with its tree, and points on it that stand for it: its vertices and the centres of its triangles.
-/// Errors of levels are judged at them.
+/// A mesh's surface with its tree, and points on it that stand for it: its vertices and, for fitting, the centres of
+/// its triangles: vertices that are moved by vertices alone come to fit those and nothing between. Errors of levels are
+/// judged at them.
 class FitTarget {
  public:
   /// O(n log n). The mesh must outlive it. A mesh without triangles gives an empty target.
-  explicit FitTarget(const Mesh& original, const Task& task = {});
+  explicit FitTarget(const Mesh& original, const Task& task = {}, bool centres = true);
   FitTarget(const FitTarget&) = delete;
   FitTarget& operator=(const FitTarget&) = delete;
 

@@ -6,6 +6,7 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/random.h"
+#include "lodestone/math/box.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/simplify/fit_ties_detail.h"
 #include "lodestone/spatial/closest_batch.h"
@@ -103,20 +104,27 @@ void raise(Worst& worst, const Worst& other) {
   if (other.distance > worst.distance) worst = other;
 }
 
-// Distances of the level's vertices, told to all triangles around them.
-void look_at_corners(const FitTarget& target, const spatial::Surface& level, Ties& ties, const Task& task) {
-  std::vector<Worst> at(level.positions.size());
-  parallel_for(level.positions.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+// Distances of the level's vertices, those that are not known; told to all triangles around them.
+void look_at_corners(const FitTarget& target, const spatial::Surface& level, const std::vector<std::uint8_t>& is_known,
+                     Ties& ties, const Task& task) {
+  std::vector<std::uint32_t> wanted;
+  for (std::uint32_t v = 0; v < level.positions.size(); ++v) {
+    if (is_known.empty() || is_known[v] == 0) wanted.push_back(v);
+  }
+  ties.corner.resize(level.positions.size());
+  parallel_for(wanted.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<Vec3d> points;
+    for (std::size_t i = begin; i < end; ++i) points.push_back(level.positions[wanted[i]]);
     std::vector<spatial::Nearest> closest(end - begin);
-    spatial::ClosestBatch(target.tree()).find(std::span(level.positions).subspan(begin, end - begin), closest);
+    spatial::ClosestBatch(target.tree()).find(points, closest);
     for (std::size_t i = begin; i < end; ++i) {
-      at[i].distance = static_cast<float>(std::sqrt(closest[i - begin].distance_sq));
-      at[i].partner = closest[i - begin].point;
+      const spatial::Nearest& near = closest[i - begin];
+      ties.corner[wanted[i]] = {static_cast<float>(std::sqrt(near.distance_sq)), 0, 0, near.point};
     }
   });
   for (std::size_t t = 0; t < level.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
-      Worst worst = at[level.triangles[t][k]];
+      Worst worst = ties.corner[level.triangles[t][k]];
       worst.second = k == 1 ? 1.0F : 0.0F;
       worst.third = k == 2 ? 1.0F : 0.0F;
       raise(ties.worst[t], worst);
@@ -203,12 +211,52 @@ spatial::Surface new_triangles(const spatial::Surface& level, const std::vector<
   return out;
 }
 
+// Cells of a grid over a surface: which could hold a point that is nearer than `reach` to one of its triangles.
+class NearMask {
+ public:
+  NearMask(const spatial::Surface& surface, double reach) : origin_(surface.bounds.min - Vec3d{reach, reach, reach}) {
+    const Vec3d size = surface.bounds.size() + Vec3d{2 * reach, 2 * reach, 2 * reach};
+    for (std::size_t k = 0; k < 3; ++k) scale_[k] = size[k] > 0 ? kCells / size[k] : 0;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      Box3d box;
+      for (const Vec3d& p : surface.corners(t)) box.add(p);
+      std::uint32_t low[3], high[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        low[k] = cell(box.min[k] - reach, k);
+        high[k] = cell(box.max[k] + reach, k);
+      }
+      for (std::uint32_t z = low[2]; z <= high[2]; ++z) {
+        for (std::uint32_t y = low[1]; y <= high[1]; ++y) {
+          for (std::uint32_t x = low[0]; x <= high[0]; ++x) rows_[z * kCells + y] |= std::uint64_t{1} << x;
+        }
+      }
+    }
+  }
+
+  bool maybe_near(Vec3d p) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double place = (p[k] - origin_[k]) * scale_[k];
+      if (!(place >= 0 && place <= kCells)) return false;
+    }
+    return (rows_[cell(p.z, 2) * kCells + cell(p.y, 1)] >> cell(p.x, 0) & 1) != 0;
+  }
+
+ private:
+  static constexpr std::uint32_t kCells = 64;
+  std::uint32_t cell(double at, std::size_t k) const {
+    return static_cast<std::uint32_t>(std::clamp((at - origin_[k]) * scale_[k], 0.0, kCells - 1.0));
+  }
+  Vec3d origin_, scale_;
+  std::vector<std::uint64_t> rows_ = std::vector<std::uint64_t>(std::size_t{kCells} * kCells, 0);
+};
+
 // As tie_points(): a point keeps its partner where that is there still, unless a new triangle is nearer.
 void keep_points(const spatial::Surface& level, const spatial::Bvh& tree, const spatial::Surface& fresh,
                  const std::vector<std::uint32_t>& new_of, const Known& known, std::span<Tie> ties, const Task& task) {
   constexpr std::size_t kEach = std::size(kInner);
   const std::optional<spatial::Bvh> fresh_tree =
       fresh.triangles.empty() ? std::nullopt : std::make_optional<spatial::Bvh>(fresh);
+  const NearMask mask(fresh, known.ties.max);
   parallel_for(new_of.size(), kChunk / 8, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<spatial::Nearest> near;
     std::uint32_t hint = kNone;
@@ -228,7 +276,7 @@ void keep_points(const spatial::Surface& level, const spatial::Bvh& tree, const 
         tie.triangle = new_of[old];
         if (!fresh_tree) continue;
         double best_sq = length_sq(p - tie.on(level.corners(tie.triangle)));
-        if (fresh.bounds.distance_sq(p) >= best_sq) continue;
+        if (!(best_sq > 0) || !mask.maybe_near(p)) continue;
         near.clear();
         fresh_tree->all_within(p, std::sqrt(best_sq), near);
         for (const spatial::Nearest& n : near) {
@@ -275,13 +323,21 @@ Ties make_ties(const FitTarget& target, const spatial::Surface& level, const Tas
   std::vector<Tie> loose(points + triangles * std::size(kInner));
   const std::span<Tie> of_points = std::span(loose).first(points), of_level = std::span(loose).subspan(points);
   ties.close.assign(triangles, {});
+  ties.corner.assign(level.positions.size(), {});
+  std::vector<std::uint8_t> corner_known;
   if (known != nullptr && !known->ties.list.empty()) {
     const std::vector<std::uint32_t> old_of = same_triangles(level, known->level);
+    corner_known.resize(level.positions.size(), 0);
     std::vector<std::uint32_t> new_of(known->level.triangles.size(), kNone);
     for (std::uint32_t t = 0; t < triangles; ++t) {
       if (old_of[t] == kNone) continue;
       new_of[old_of[t]] = t;
       ties.close[t] = known->ties.close[old_of[t]];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t v = level.triangles[t][k];
+        ties.corner[v] = known->ties.corner[known->level.triangles[old_of[t]][k]];
+        corner_known[v] = 1;
+      }
     }
     keep_points(level, tree, new_triangles(level, old_of), new_of, *known, of_points, task);
     keep_level(target, level, old_of, *known, of_level, task);
@@ -291,7 +347,7 @@ Ties make_ties(const FitTarget& target, const spatial::Surface& level, const Tas
   }
   sort_by_triangle(ties, std::move(loose), triangles);
   add_up(level, ties, task);
-  look_at_corners(target, level, ties, task);
+  look_at_corners(target, level, corner_known, ties, task);
   for (std::size_t t = 0; t < triangles; ++t) {
     raise(ties.worst[t], ties.close[t]);
     ties.max = std::max(ties.max, static_cast<double>(ties.worst[t].distance));

@@ -39,9 +39,10 @@ struct Ties {
   std::vector<std::uint32_t> first;  ///< of each triangle, and the end
   /// Mean of both directions' area-weighted mean distances, and the largest distance.
   double mean = 0, max = 0;
-  double energy = 0;         ///< sum of weighted squares over both directions
-  std::vector<Worst> worst;  ///< of each triangle
-  std::vector<Worst> close;  ///< the same of the triangles that have been looked at closely; a distance of 0 = not so
+  double energy = 0;          ///< sum of weighted squares over both directions
+  std::vector<Worst> worst;   ///< of each triangle
+  std::vector<Worst> corner;  ///< the distance of each vertex of the level
+  std::vector<Worst> close;   ///< the same of the triangles that have been looked at closely; a distance of 0 = not so
 };
 
 using TrianglePair = std::array<std::uint32_t, 2>;
