@@ -87,16 +87,17 @@ OptionGroup single_target_group() {
 }
 
 OptionGroup effort_group() {
-  return {"Effort",
-          {{"--effort",
-            "",
-            "HOW",
-            "",
-            "",
-            "fast: edge collapse; normal: half the maximum error for twice the time; best: less of both, ten times "
-            "(without: normal for ladders and errors, fast for a count)",
-            {"fast", "normal", "best"},
-            Completion::choices}}};
+  return {
+      "Effort",
+      {{"--effort",
+        "",
+        "HOW",
+        "",
+        "",
+        "fast: edge collapse; normal: again with weights where it is worst, 3 times as long; best: fitted, 15 times "
+        "(without: normal for ladders and errors, fast for counts)",
+        {"fast", "normal", "best"},
+        Completion::choices}}};
 }
 
 chain::Effort effort_of(const Arguments& arguments, chain::Effort otherwise) {

@@ -12,6 +12,9 @@ namespace {
 // A weighted run starts from a level of so many times the triangles: it is as good as the original there, and faster.
 constexpr std::size_t kFiner = 6;
 
+// Larger levels stay as they are: ties take some 300 bytes a triangle, three times over.
+constexpr std::size_t kMostTriangles = std::size_t{1} << 21;
+
 // Distances in mesh space and in the scene differ by a factor alone.
 bool is_similarity(const Mat4d& placing) {
   const Vec3d x = placing.direction({1, 0, 0}), y = placing.direction({0, 1, 0}), z = placing.direction({0, 0, 1});
@@ -39,7 +42,7 @@ Result<Mesh> CollapsePlan::shaped(std::size_t m, Mesh plain, Effort effort, FitT
                                   const Task& task) const {
   const CollapseLog& log = logs_[m];
   const std::size_t triangles = plain.triangles.size();
-  if (triangles == 0 || triangles >= log.start_triangles) return plain;
+  if (triangles == 0 || triangles >= log.start_triangles || triangles > kMostTriangles) return plain;
   targets.resize(logs_.size());
   if (targets[m] == nullptr) {
     targets[m] = std::make_unique<simplify::FitTarget>(mesh(m), task, effort == Effort::best);

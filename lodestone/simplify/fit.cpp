@@ -13,7 +13,10 @@ namespace lodestone::simplify {
 namespace {
 
 constexpr double kDamping = 0.002;
-constexpr double kSuspect = 0.4;  // of the maximum: triangles above it are looked at closely
+// Of the maximum: triangles above it are looked at closely.
+constexpr double kSuspect = 0.4, kSuspectRoughly = 0.65;
+
+double suspect_share(const FitTarget& target) { return target.has_centres() ? kSuspect : kSuspectRoughly; }
 
 // For each vertex of the surface, that of the mesh.
 std::vector<std::uint32_t> mesh_vertices(const Mesh& mesh, const spatial::Surface& surface) {
@@ -72,7 +75,7 @@ struct FittedLevel::State {
       : target(to), mesh(std::move(level)) {
     known.level = surface_of(mesh, task);
     known.ties = detail::make_ties(target, known.level, task, before);
-    detail::look_at_worst(target, known.level, kSuspect, known.ties, task);
+    detail::look_at_worst(target, known.level, suspect_share(target), known.ties, task);
     mesh_vertex = mesh_vertices(mesh, known.level);
   }
 };
@@ -141,7 +144,7 @@ void FittedLevel::fit(const FitOptions& options, const Task& task) {
       break;
     }
   }
-  detail::look_at_worst(target, known.level, kSuspect, known.ties, task);
+  detail::look_at_worst(target, known.level, suspect_share(target), known.ties, task);
   const std::vector<Vec3f> positions_before = mesh.positions;
   for (std::size_t v = 0; v < state_->mesh_vertex.size(); ++v) {
     mesh.positions[state_->mesh_vertex[v]] = to_float(known.level.positions[v] - mesh.offset);

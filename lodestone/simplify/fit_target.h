@@ -25,6 +25,7 @@ class FitTarget {
   const spatial::Surface& surface() const { return surface_; }
   const spatial::Bvh& tree() const { return tree_; }
   std::span<const Vec3d> points() const { return points_; }
+  bool has_centres() const { return points_.size() > surface_.positions.size(); }
   /// The share of the area that each point stands for; they sum to 1.
   std::span<const float> weights() const { return weights_; }
 

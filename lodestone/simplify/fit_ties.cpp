@@ -23,16 +23,23 @@ Tie tie_at(const spatial::Surface& level, std::uint32_t triangle, Vec3d on_level
   return {triangle, static_cast<float>(w[1]), static_cast<float>(w[2]), weight, partner};
 }
 
-// From points of the original to the level.
-void tie_points(const FitTarget& target, const spatial::Surface& level, const spatial::Bvh& tree, std::span<Tie> ties,
-                const Task& task) {
-  const std::span<const Vec3d> points = target.points();
-  parallel_for(points.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+// Every how many-th point of the original is enough for a level: some 24 a triangle, 100,000 at least.
+std::size_t stride_for(std::size_t points, std::size_t triangles) {
+  return std::max<std::size_t>(1, points / (24 * triangles + 100'000));
+}
+
+// From points of the original to the level, every `stride`-th.
+void tie_points(const FitTarget& target, const spatial::Surface& level, const spatial::Bvh& tree, std::size_t stride,
+                std::span<Tie> ties, const Task& task) {
+  const auto factor = static_cast<float>(stride);
+  parallel_for(ties.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<Vec3d> points;
+    for (std::size_t i = begin; i < end; ++i) points.push_back(target.points()[i * stride]);
     std::vector<spatial::Nearest> closest(end - begin);
-    spatial::ClosestBatch(tree).find(points.subspan(begin, end - begin), closest);
+    spatial::ClosestBatch(tree).find(points, closest);
     for (std::size_t i = begin; i < end; ++i) {
       const spatial::Nearest& near = closest[i - begin];
-      ties[i] = tie_at(level, near.triangle, near.point, target.weights()[i], points[i]);
+      ties[i] = tie_at(level, near.triangle, near.point, factor * target.weights()[i * stride], points[i - begin]);
     }
   });
 }
@@ -317,15 +324,19 @@ void keep_level(const FitTarget& target, const spatial::Surface& level, const st
 
 Ties make_ties(const FitTarget& target, const spatial::Surface& level, const Task& task, const Known* known) {
   Ties ties;
-  const std::size_t triangles = level.triangles.size(), points = target.points().size();
-  if (triangles == 0 || points == 0) return ties;
+  const std::size_t triangles = level.triangles.size(), all = target.points().size();
+  if (triangles == 0 || all == 0) return ties;
+  const bool updates = known != nullptr && !known->ties.list.empty();
+  const std::size_t stride = stride_for(all, triangles);
+  const std::size_t points = updates ? known->ties.list.size() - known->level.triangles.size() * std::size(kInner)
+                                     : (all + stride - 1) / stride;
   const spatial::Bvh tree(level, task);
   std::vector<Tie> loose(points + triangles * std::size(kInner));
   const std::span<Tie> of_points = std::span(loose).first(points), of_level = std::span(loose).subspan(points);
   ties.close.assign(triangles, {});
   ties.corner.assign(level.positions.size(), {});
   std::vector<std::uint8_t> corner_known;
-  if (known != nullptr && !known->ties.list.empty()) {
+  if (updates) {
     const std::vector<std::uint32_t> old_of = same_triangles(level, known->level);
     corner_known.resize(level.positions.size(), 0);
     std::vector<std::uint32_t> new_of(known->level.triangles.size(), kNone);
@@ -342,7 +353,7 @@ Ties make_ties(const FitTarget& target, const spatial::Surface& level, const Tas
     keep_points(level, tree, new_triangles(level, old_of), new_of, *known, of_points, task);
     keep_level(target, level, old_of, *known, of_level, task);
   } else {
-    tie_points(target, level, tree, of_points, task);
+    tie_points(target, level, tree, stride, of_points, task);
     tie_level(target, level, of_level, task);
   }
   sort_by_triangle(ties, std::move(loose), triangles);
