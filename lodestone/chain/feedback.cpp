@@ -8,6 +8,7 @@
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/units.h"
 #include "lodestone/chain/feedback_detail.h"
+#include "lodestone/core/adjacency.h"
 #include "lodestone/simplify/fit.h"
 #include "lodestone/simplify/split_worst.h"
 #include "lodestone/spatial/closest_batch.h"
@@ -86,7 +87,9 @@ Result<FittedLevel> equalized(const ShapeSource& source, const FittedLevel& leve
                               const Task& task) {
   const std::size_t triangles = level.mesh().triangles.size();
   const auto most = static_cast<std::size_t>(kSplitShare * static_cast<double>(triangles));
-  const simplify::SplitResult split = simplify::split_worst(level, kSplit, std::max<std::size_t>(2, most), task);
+  simplify::SplitResult split =
+      simplify::split_worst(level, kSplit, std::max<std::size_t>(2, most), source.options.keep_border, task);
+  std::sort(split.pulled.begin(), split.pulled.end(), before);
   EdgeCollapseOptions options = source.options;
   options.target_triangles = most_triangles;
   options.record_log = false;
@@ -105,16 +108,16 @@ Result<FittedLevel> equalized(const ShapeSource& source, const FittedLevel& leve
   fit.solves = kLocalSolves;
   fit.locked = far_from_new(next.mesh(), level.mesh(), kRings);
   const std::vector<std::uint8_t> kept = at_places(next.mesh(), source.locked_places);
+  const std::vector<std::uint8_t> pulled = at_places(next.mesh(), split.pulled);
   for (std::size_t v = 0; v < fit.locked.size(); ++v) {
-    const auto& pulled = split.pulled;  // fitting would let them out again
-    const Vec3f& p = next.mesh().positions[v];
-    if (kept[v] != 0 || std::find(pulled.begin(), pulled.end(), p) != pulled.end()) fit.locked[v] = 1;
+    if (kept[v] != 0 || pulled[v] != 0) fit.locked[v] = 1;  // fitting would let those out again that were pulled in
   }
   next.fit(fit, task);
   return next;
 }
 
-Result<Mesh> weighted(const ShapeSource& source, Mesh plain, const Task& task) {
+// The start collapsed again, vertices where the level is worst weighing more; the smallest maximum.
+Result<FittedLevel> weighted(const ShapeSource& source, Mesh plain, const Task& task) {
   EdgeCollapseOptions options = source.options;
   options.target_triangles = plain.triangles.size();
   options.record_log = false;
@@ -130,17 +133,29 @@ Result<Mesh> weighted(const ShapeSource& source, Mesh plain, const Task& task) {
     current = FittedLevel(source.target, std::move(made->mesh), task);
     if (current.max() < best.max() && current.mean() <= kMeanSlack * start_mean) best = current;
   }
-  return best.mesh();
+  return best;
 }
 
-Result<Mesh> fitted(const ShapeSource& source, Mesh plain, const Task& task) {
+bool has_borders(const Mesh& mesh, const Task& task) {
+  const EdgeTriangles edges = edge_triangles(mesh, task);
+  return std::any_of(edges.edges.begin(), edges.edges.end(), [](const Edge& e) { return e.count != 2; });
+}
+
+Result<FittedLevel> fitted(const ShapeSource& source, Mesh plain, const Task& task) {
   const std::size_t triangles = plain.triangles.size();
   simplify::FitOptions fit;
   fit.solves = kSolves;
-  if (!source.locked_places.empty()) fit.locked = at_places(plain, source.locked_places);
-  FittedLevel best(source.target, std::move(plain), task);
+  // Fitting holds borders and what is not manifold; where these are worst, only collapsing otherwise helps.
+  Result<FittedLevel> start = has_borders(plain, task)
+                                  ? weighted(source, std::move(plain), task)
+                                  : Result<FittedLevel>(FittedLevel(source.target, std::move(plain), task));
+  if (!start) return fail(start.error());
+  FittedLevel best = std::move(*start);
+  if (!source.locked_places.empty()) fit.locked = at_places(best.mesh(), source.locked_places);
   best.fit(fit, task);
   task.advance(0.4);
+  // Triangles are not shifted away from where the user wants them.
+  if (!source.options.weights.empty()) return best;
   const double most_mean = kRoundsMean * best.mean();
   FittedLevel current = best;
   for (int round = 0, idle = 0; round < kRounds && idle < kIdleRounds && !task.cancelled(); ++round) {
@@ -155,17 +170,18 @@ Result<Mesh> fitted(const ShapeSource& source, Mesh plain, const Task& task) {
     best = current;
     idle = 0;
   }
-  return best.mesh();
+  return best;
 }
 
 }  // namespace
 
 Result<Mesh> shape_level(const ShapeSource& source, Mesh plain, Effort effort, const Task& task) {
   if (effort == Effort::fast || plain.triangles.empty()) return plain;
-  Result<Mesh> shaped =
+  Result<FittedLevel> shaped =
       effort == Effort::normal ? weighted(source, std::move(plain), task) : fitted(source, std::move(plain), task);
   if (task.cancelled()) return cancelled_error("shaping");
-  return shaped;
+  if (!shaped) return fail(shaped.error());
+  return shaped->mesh();
 }
 
 }  // namespace lodestone::chain::detail

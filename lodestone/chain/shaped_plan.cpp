@@ -50,7 +50,7 @@ Result<Mesh> CollapsePlan::shaped(std::size_t m, Mesh plain, Effort effort, FitT
   const simplify::EdgeCollapseOptions& options = options_[m];
   Mesh finer;
   const bool weighs = !options.weights.empty();  // weights are about the vertices of the original
-  if (effort == Effort::normal && !weighs && kFiner * triangles < log.start_triangles) {
+  if (!weighs && kFiner * triangles < log.start_triangles) {
     Result<ReplayResult> replayed = replay(mesh(m), log, log.prefix_for(kFiner * triangles), task);
     if (!replayed) return fail(replayed.error());
     finer = std::move(replayed->mesh);

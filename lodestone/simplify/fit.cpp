@@ -92,6 +92,7 @@ FittedLevel::FittedLevel(FittedLevel&&) noexcept = default;
 FittedLevel& FittedLevel::operator=(FittedLevel&&) noexcept = default;
 FittedLevel::~FittedLevel() = default;
 
+const FitTarget& FittedLevel::target() const { return state_->target; }
 const Mesh& FittedLevel::mesh() const { return state_->mesh; }
 double FittedLevel::mean() const { return state_->known.ties.mean; }
 double FittedLevel::max() const { return state_->known.ties.max; }

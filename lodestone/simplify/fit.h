@@ -37,6 +37,7 @@ class FittedLevel {
   FittedLevel& operator=(FittedLevel&&) noexcept;
   ~FittedLevel();
 
+  const FitTarget& target() const;
   const Mesh& mesh() const;
   double mean() const;  ///< of both directions, mesh units
   double max() const;

@@ -5,6 +5,7 @@
 
 #include "lodestone/core/adjacency.h"
 #include "lodestone/core/blend.h"
+#include "lodestone/simplify/fit_attributes_detail.h"
 
 namespace lodestone::simplify {
 
@@ -38,14 +39,17 @@ struct Mix {
 
 class Splitter {
  public:
-  Splitter(const FittedLevel& level, const Task& task)
-      : mesh_(level.mesh()),
+  Splitter(const FittedLevel& level, bool keep_borders, const Task& task)
+      : level_(level),
+        task_(task),
+        keep_borders_(keep_borders),
+        mesh_(level.mesh()),
         edges_(edge_triangles(mesh_, task)),
         touched_(mesh_.triangles.size(), 0),
         pulled_(mesh_.vertex_count(), 0),
-        at_border_(mesh_.vertex_count(), 0) {
+        stays_(mesh_.vertex_count(), 0) {
     for (const Edge& edge : edges_.edges) {
-      if (edge.count != 2) at_border_[edge.a] = at_border_[edge.b] = 1;
+      if (!may_split(edge)) stays_[edge.a] = stays_[edge.b] = 1;
     }
   }
 
@@ -66,10 +70,15 @@ class Splitter {
   SplitResult finish() {
     AttributeBlender blender(mesh_.attributes);
     for (const Mix& mix : mixes_) blender.blend(mix.own, mix.other, mix.share);
+    std::vector<Vec3f> before = mesh_.positions;
+    std::copy(level_.mesh().positions.begin(), level_.mesh().positions.end(), before.begin());
+    detail::carry_attributes(level_.target(), before, mesh_, task_);
     return {std::move(mesh_), std::move(moved_)};
   }
 
  private:
+  bool may_split(const Edge& edge) const { return edge.count == 2 || (edge.count == 1 && !keep_borders_); }
+
   std::uint32_t add_vertex(Vec3d place) {
     const auto vertex = static_cast<std::uint32_t>(mesh_.positions.size());
     mesh_.positions.push_back(to_float(place - mesh_.offset));
@@ -82,7 +91,7 @@ class Splitter {
 
   // A vertex that sticks out goes half of the way.
   std::size_t pull_in(std::uint32_t vertex, const FittedLevel::Worst& worst) {
-    if (pulled_[vertex] != 0 || at_border_[vertex] != 0) return 0;
+    if (pulled_[vertex] != 0 || stays_[vertex] != 0) return 0;
     pulled_[vertex] = 1;
     mesh_.positions[vertex] = to_float(lerp(mesh_.position(vertex), worst.partner, kPull) - mesh_.offset);
     moved_.push_back(mesh_.positions[vertex]);
@@ -111,7 +120,7 @@ class Splitter {
                                         [](const Edge& e, const auto& side) {
                                           return std::pair{e.a, e.b} < side;
                                         });
-    if (found == edges_.edges.end() || found->a != a || found->b != b || found->count != 2) return 0;
+    if (found == edges_.edges.end() || found->a != a || found->b != b || !may_split(*found)) return 0;
     const auto around = edges_.of(*found);
     for (const std::uint32_t u : around) {
       if (touched_[u] != 0) return 0;
@@ -139,20 +148,23 @@ class Splitter {
       mesh_.triangles[u] = {from, wedge, third};
       add_triangle({wedge, to, third}, u);
     }
-    return 2;
+    return around.size();
   }
 
+  const FittedLevel& level_;
+  const Task& task_;
+  bool keep_borders_;
   Mesh mesh_;
   EdgeTriangles edges_;  // of the level as it was
   std::vector<std::uint8_t> touched_;
-  std::vector<std::uint8_t> pulled_, at_border_;  // of the level's vertices
+  std::vector<std::uint8_t> pulled_, stays_;  // of the level's vertices
   std::vector<Vec3f> moved_;
   std::vector<Mix> mixes_;
 };
 
 }  // namespace
 
-SplitResult split_worst(const FittedLevel& level, double share, std::size_t most, const Task& task) {
+SplitResult split_worst(const FittedLevel& level, double share, std::size_t most, bool keep_borders, const Task& task) {
   const std::vector<FittedLevel::Worst> worst = level.worst();
   std::vector<std::uint32_t> order;
   for (std::uint32_t t = 0; t < worst.size(); ++t) {
@@ -160,7 +172,7 @@ SplitResult split_worst(const FittedLevel& level, double share, std::size_t most
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return worst[a].distance > worst[b].distance; });
-  Splitter splitter(level, task);
+  Splitter splitter(level, keep_borders, task);
   std::size_t added = 0;
   for (const std::uint32_t t : order) {
     if (added >= most) break;

@@ -19,6 +19,7 @@ struct SplitResult {
 /// distance is above `share` of the maximum, no triangle twice, until `most` triangles have been added: within the
 /// triangle, or on its side where the place is near one. Where it is a vertex, as of those that stick out of bulges,
 /// that goes half way to the original. Attributes are those of the level at the place. O(n log n).
-SplitResult split_worst(const FittedLevel& level, double share, std::size_t most, const Task& task);
+/// Open borders are split and pulled, too, unless they are to be kept.
+SplitResult split_worst(const FittedLevel& level, double share, std::size_t most, bool keep_borders, const Task& task);
 
 }  // namespace lodestone::simplify

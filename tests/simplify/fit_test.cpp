@@ -118,7 +118,7 @@ TEST(SplitWorst, adds_triangles_and_keeps_the_surface_whole) {
   const Mesh original = bumpy(60);
   const FitTarget target(original);
   const FittedLevel level(target, collapsed(original, 700), {});
-  const SplitResult split = split_worst(level, 0.5, 40, {});
+  const SplitResult split = split_worst(level, 0.5, 40, false, {});
   EXPECT_GT(split.mesh.triangles.size(), level.mesh().triangles.size());
   EXPECT_LE(split.mesh.triangles.size(), level.mesh().triangles.size() + 41);
   const Topology t = topology_of(split.mesh);
