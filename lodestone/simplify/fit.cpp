@@ -12,7 +12,9 @@ namespace lodestone::simplify {
 
 namespace {
 
-constexpr double kDamping = 0.002;
+// With colours or textures vertices hardly slide over the surface: collapses have put them where the texture's course
+// is followed best.
+constexpr double kDamping = 0.002, kDampingWithLook = 0.5;
 // Of the maximum: triangles above it are looked at closely.
 constexpr double kSuspect = 0.4, kSuspectRoughly = 0.65;
 
@@ -127,6 +129,7 @@ void FittedLevel::fit(const FitOptions& options, const Task& task) {
   std::vector<Triangle> wedges;
   for (const std::uint32_t t : known.level.drawn) wedges.push_back(mesh.triangles[t]);
   const bool flips = options.flips && !has_look(mesh);
+  const double damping = has_look(mesh) ? kDampingWithLook : kDamping;
   for (int solve = 0; solve < options.solves && !task.cancelled(); ++solve) {
     detail::Known before = known;
     const std::vector<Triangle> wedges_before = wedges;
@@ -135,7 +138,7 @@ void FittedLevel::fit(const FitOptions& options, const Task& task) {
                     known.ties, task);
     }
     const detail::CornersAt around = detail::corners_at(known.level);
-    detail::take_moves(known.level, around, detail::solve_moves(known.level, known.ties, around, held, kDamping, task),
+    detail::take_moves(known.level, around, detail::solve_moves(known.level, known.ties, around, held, damping, task),
                        task);
     for (Vec3d& p : known.level.positions) p = to_double(to_float(p - mesh.offset)) + mesh.offset;
     known.ties = detail::make_ties(target, known.level, task, options.locked.empty() ? nullptr : &before);
