@@ -99,13 +99,13 @@ class LevelMaker {
     return measured(std::move(cut), prefix, std::move(*model), Effort::fast, task.part(0.7));
   }
 
-  /// The same shaped by its error, if that is better; else the plain one.
-  Result<Cut> shaped(std::size_t prefix, const Task& task) {
+  /// The same shaped by its error, if that is better; else the plain one. With a goal a larger mean is no matter.
+  Result<Cut> shaped(std::size_t prefix, const Task& task, double goal = 0) {
     Result<Cut> cut = plain(prefix, task.part(effort_ == Effort::fast ? 1.0 : 0.2));
     if (!cut || effort_ == Effort::fast || prefix == 0) return cut;
     Cut better;
     const Stopwatch making;
-    Result<Model> model = plan_.shaped_after(prefix, effort_, targets_, task.part(0.6, "shaping"));
+    Result<Model> model = plan_.shaped_after(prefix, effort_, goal, targets_, task.part(0.6, "shaping"));
     if (!model) return fail(model.error());
     better.simplify_seconds = cut->simplify_seconds + making.total();
     better.measure_seconds = cut->measure_seconds;
@@ -113,7 +113,8 @@ class LevelMaker {
     if (!made) return made;
     const LevelError &now = made->level.error, &then = cut->level.error;
     const double slack = effort_ == Effort::normal ? kMeanSlack : 1;
-    const bool better_of_both = now.measured_error < then.measured_error && now.mean_error <= slack * then.mean_error;
+    const bool better_of_both =
+        now.measured_error < then.measured_error && (goal > 0 || now.mean_error <= slack * then.mean_error);
     if (better_of_both && made->level.triangles <= cut->level.triangles) return made;
     cut->simplify_seconds = made->simplify_seconds;
     cut->measure_seconds = made->measure_seconds;
@@ -201,7 +202,7 @@ Result<Cut> find_error_cut(LevelMaker& maker, std::size_t start, double limit, c
     search.bad = plan.size() + 1;
     search.nearness = kNearShaped;
     // Steps by the same factor until one fails, then between the last two.
-    const auto make = [&](std::size_t probe) { return maker.shaped(probe, shaping.part(0.15)); };
+    const auto make = [&](std::size_t probe) { return maker.shaped(probe, shaping.part(0.15), limit); };
     std::size_t probe = search.good;
     while (probe < plan.size() && search.bad > plan.size()) {
       const double next = kStep * static_cast<double>(plan.triangles_after(probe));

@@ -44,7 +44,8 @@ class CollapsePlan {
   /// As model_after(), with every mesh that allows it shaped by its own measured error (shape_level()): those that are
   /// drawn without being stretched, and of which no part vanishes and no triangle must stay. `targets` keeps what was
   /// prepared for the next call; of this plan, empty at first.
-  Result<Model> shaped_after(std::size_t count, Effort effort, FitTargets& targets, Task task) const;
+  /// `goal`: a maximum error that is enough, world space; 0 = as small as it gets.
+  Result<Model> shaped_after(std::size_t count, Effort effort, double goal, FitTargets& targets, Task task) const;
 
   const simplify::LockCounts& locked() const { return locked_; }
   /// Why the plan ends where it ends, in plain words.
@@ -76,7 +77,8 @@ class CollapsePlan {
   Result<Mesh> mesh_after(std::size_t m, const Progress& progress, double error, const Task& task) const;
   void finish(Mesh& mesh) const;
   bool can_be_shaped(std::size_t m) const;
-  Result<Mesh> shaped(std::size_t m, Mesh plain, Effort effort, FitTargets& targets, const Task& task) const;
+  Result<Mesh> shaped(std::size_t m, Mesh plain, Effort effort, double goal, FitTargets& targets,
+                      const Task& task) const;
 
   const Model* original_ = nullptr;
   std::vector<Mesh> working_;        // the meshes that the logs are about, where they are not the original's

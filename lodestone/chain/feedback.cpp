@@ -32,8 +32,10 @@ constexpr int kRounds = 14;
 constexpr int kIdleRounds = 4;
 constexpr double kSplit = 0.75;        // of the maximum: triangles above it are split
 constexpr double kSplitShare = 0.004;  // of all triangles that may be added a round
-constexpr double kRoundsMean = 1.03;   // how far the mean may rise over the fitted one's
-constexpr double kHold = 1e4;          // weight of vertices where the level is worst, so that they stay
+constexpr double kRoundsMeanForGoal = 1.15;
+constexpr double kGoal = 0.88;        // of the goal: what is found here is no certified bound
+constexpr double kRoundsMean = 1.03;  // how far the mean may rise over the fitted one's
+constexpr double kHold = 1e4;         // weight of vertices where the level is worst, so that they stay
 constexpr int kSolves = 6, kLocalSolves = 3;
 constexpr int kRings = 2;  // around what is new: vertices that are fitted again
 
@@ -156,11 +158,15 @@ Result<FittedLevel> fitted(const ShapeSource& source, Mesh plain, const Task& ta
   task.advance(0.4);
   // Triangles are not shifted away from where the user wants them.
   if (!source.options.weights.empty()) return best;
-  const double most_mean = kRoundsMean * best.mean();
+  // A maximum that is asked for is worth more rounds, and some of the mean; less of it is worth nothing.
+  const bool asked = source.goal > 0;
+  const double most_mean = (asked ? kRoundsMeanForGoal : kRoundsMean) * best.mean();
+  const int most_rounds = asked ? 2 * kRounds : kRounds, most_idle = asked ? 2 * kIdleRounds : kIdleRounds;
   FittedLevel current = best;
-  for (int round = 0, idle = 0; round < kRounds && idle < kIdleRounds && !task.cancelled(); ++round) {
+  for (int round = 0, idle = 0; round < most_rounds && idle < most_idle && !task.cancelled(); ++round) {
+    if (best.max() < kGoal * source.goal) break;
     const Task part =
-        task.part(0.6 / kRounds, fmt::format("round {}, maximum {}", round + 1, short_number(best.max())));
+        task.part(0.6 / most_rounds, fmt::format("round {}, maximum {}", round + 1, short_number(best.max())));
     Result<FittedLevel> next = equalized(source, current, triangles, part);
     if (!next) return fail(next.error());
     if (next->mean() > most_mean || next->mesh().triangles.size() > triangles) break;

@@ -21,6 +21,7 @@ struct ShapeSource {
   const Mesh& start;                             ///< what is collapsed: the original, or a finer level of it
   const simplify::FitTarget& target;             ///< the original
   const simplify::EdgeCollapseOptions& options;  ///< of the plain run, as they are for `start`; its target is not used
+  double goal = 0;                               ///< a maximum that is enough, mesh units; 0 = as small as it gets
   std::vector<Vec3f> locked_places;              ///< of vertices that stay, sorted as before() does
 };
 

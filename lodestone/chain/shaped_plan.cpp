@@ -38,7 +38,7 @@ bool CollapsePlan::can_be_shaped(std::size_t m) const {
   return logs_[m].start_triangles > 0 && untouched_.empty() && !prunes_ && is_similarity(placings_[m]);
 }
 
-Result<Mesh> CollapsePlan::shaped(std::size_t m, Mesh plain, Effort effort, FitTargets& targets,
+Result<Mesh> CollapsePlan::shaped(std::size_t m, Mesh plain, Effort effort, double goal, FitTargets& targets,
                                   const Task& task) const {
   const CollapseLog& log = logs_[m];
   const std::size_t triangles = plain.triangles.size();
@@ -55,20 +55,22 @@ Result<Mesh> CollapsePlan::shaped(std::size_t m, Mesh plain, Effort effort, FitT
     if (!replayed) return fail(replayed.error());
     finer = std::move(replayed->mesh);
   }
-  const ShapeSource source{finer.triangles.empty() ? mesh(m) : finer, *targets[m], options,
+  const double scale = length(placings_[m].direction({1, 0, 0}));
+  const ShapeSource source{finer.triangles.empty() ? mesh(m) : finer, *targets[m], options, goal / scale,
                            places_of(mesh(m), options.locked)};
   Result<Mesh> made = shape_level(source, std::move(plain), effort, task);
   if (made) finish(*made);
   return made;
 }
 
-Result<Model> CollapsePlan::shaped_after(std::size_t count, Effort effort, FitTargets& targets, Task task) const {
+Result<Model> CollapsePlan::shaped_after(std::size_t count, Effort effort, double goal, FitTargets& targets,
+                                         Task task) const {
   Result<Model> model = model_after(count, task.part(0.1));
   if (!model || effort == Effort::fast) return model;
   const double share = 0.9 / static_cast<double>(std::max<std::size_t>(1, logs_.size()));
   for (std::size_t m = 0; m < logs_.size(); ++m) {
     if (!can_be_shaped(m)) continue;
-    Result<Mesh> made = shaped(m, std::move(model->meshes[m]), effort, targets, task.part(share));
+    Result<Mesh> made = shaped(m, std::move(model->meshes[m]), effort, goal, targets, task.part(share));
     if (!made) return fail(made.error());
     model->meshes[m] = std::move(*made);
   }
