@@ -84,7 +84,10 @@ class LevelMaker {
  public:
   LevelMaker(const CollapsePlan& plan, const Reference& reference, const measure::DistanceOptions& distance,
              Effort effort)
-      : plan_(plan), reference_(reference), distance_(distance), effort_(effort) {}
+      : plan_(plan),
+        reference_(reference),
+        distance_(distance),
+        effort_(plan.can_be_shaped() ? effort : Effort::fast) {}
 
   const CollapsePlan& plan() const { return plan_; }
   Effort effort() const { return effort_; }
@@ -103,19 +106,20 @@ class LevelMaker {
   Result<Cut> shaped(std::size_t prefix, const Task& task, double goal = 0) {
     Result<Cut> cut = plain(prefix, task.part(effort_ == Effort::fast ? 1.0 : 0.2));
     if (!cut || effort_ == Effort::fast || prefix == 0) return cut;
-    Cut better;
+    Cut shaping;
     const Stopwatch making;
     Result<Model> model = plan_.shaped_after(prefix, effort_, goal, targets_, task.part(0.6, "shaping"));
     if (!model) return fail(model.error());
-    better.simplify_seconds = cut->simplify_seconds + making.total();
-    better.measure_seconds = cut->measure_seconds;
-    Result<Cut> made = measured(std::move(better), prefix, std::move(*model), effort_, task.part(0.2));
+    shaping.simplify_seconds = cut->simplify_seconds + making.total();
+    shaping.measure_seconds = cut->measure_seconds;
+    Result<Cut> made = measured(std::move(shaping), prefix, std::move(*model), effort_, task.part(0.2));
     if (!made) return made;
     const LevelError &now = made->level.error, &then = cut->level.error;
     const double slack = effort_ == Effort::normal ? kMeanSlack : 1;
-    const bool better_of_both =
-        now.measured_error < then.measured_error && (goal > 0 || now.mean_error <= slack * then.mean_error);
-    if (better_of_both && made->level.triangles <= cut->level.triangles) return made;
+    const bool no_worse =
+        now.measured_error <= then.measured_error && (goal > 0 || now.mean_error <= slack * then.mean_error);
+    const bool better = now.measured_error < then.measured_error || now.mean_error < then.mean_error;
+    if (no_worse && better && made->level.triangles <= cut->level.triangles) return made;
     cut->simplify_seconds = made->simplify_seconds;
     cut->measure_seconds = made->measure_seconds;
     cut->level.seconds = cut->simplify_seconds + cut->measure_seconds;
@@ -156,76 +160,87 @@ struct Search {
   std::optional<Cut> best;
   double simplify_seconds = 0, measure_seconds = 0;
 
+  // The cut becomes the best, whatever its error.
+  Result<void> take(Result<Cut> cut) {
+    if (!cut) return fail(cut.error());
+    simplify_seconds += cut->simplify_seconds;
+    measure_seconds += cut->measure_seconds;
+    best = std::move(*cut);
+    return {};
+  }
+
   template <class Make>
-  Result<void> run(const CollapsePlan& plan, double limit, std::size_t probe, Make&& make) {
-    while (true) {
-      Result<Cut> cut = make(probe);
-      if (!cut) return fail(cut.error());
-      simplify_seconds += cut->simplify_seconds;
-      measure_seconds += cut->measure_seconds;
-      if (cut->level.error.measured_error <= limit) {
-        good = probe;
-        best = std::move(*cut);
-      } else {
-        bad = probe;
-      }
-      const auto fine = static_cast<double>(plan.triangles_after(good));
-      const auto coarse = static_cast<double>(plan.triangles_after(std::min(plan.size(), bad)));
-      if (bad <= good + 1 || fine - coarse <= nearness * coarse) return {};
-      const auto middle = static_cast<std::size_t>(std::sqrt(fine * coarse));
-      probe = std::clamp(plan.prefix_for(middle), good + 1, bad - 1);
+  Result<void> probe(double limit, std::size_t prefix, Make&& make) {
+    Result<Cut> cut = make(prefix);
+    if (!cut) return fail(cut.error());
+    if (cut->level.error.measured_error <= limit) {
+      good = prefix;
+      return take(std::move(cut));
+    }
+    simplify_seconds += cut->simplify_seconds;
+    measure_seconds += cut->measure_seconds;
+    bad = prefix;
+    return {};
+  }
+
+  // The prefix to look at next; 0 when the bracket is narrow enough.
+  std::size_t next(const CollapsePlan& plan) const {
+    const auto fine = static_cast<double>(plan.triangles_after(good));
+    const auto coarse = static_cast<double>(plan.triangles_after(std::min(plan.size(), bad)));
+    if (bad <= good + 1 || fine - coarse <= nearness * coarse) return 0;
+    return std::clamp(plan.prefix_for(static_cast<std::size_t>(std::sqrt(fine * coarse))), good + 1, bad - 1);
+  }
+
+  template <class Make>
+  Result<void> run(const CollapsePlan& plan, double limit, std::size_t first, Make&& make) {
+    for (std::size_t prefix = first;;) {
+      if (const Result<void> ok = probe(limit, prefix, make); !ok) return ok;
+      prefix = next(plan);
+      if (prefix == 0) return {};
     }
   }
 };
 
-// The coarsest prefix found whose measured maximum is within `limit`, not finer than `start`: plain levels first,
-// within one per cent; then shaped ones from there on, within three, as each takes longer. Nothing within the limit:
-// the cut at `start` itself.
-Result<Cut> find_error_cut(LevelMaker& maker, std::size_t start, double limit, const Task& task) {
+// Where searches for errors have come to: the next, larger error needs nothing finer.
+struct Starts {
+  std::size_t plain = 0;   // the coarsest plain prefix within the last error
+  std::size_t shaped = 0;  // the prefix of the last level
+};
+
+// The coarsest prefix found whose measured maximum is within `limit`, not finer than the last level: plain levels
+// first, within one per cent; then shaped ones from there on, within three, as each takes longer. Nothing within the
+// limit: the plain cut where the last level was.
+Result<Cut> find_error_cut(LevelMaker& maker, Starts& starts, double limit, const Task& task) {
   constexpr double kNear = 0.01, kNearShaped = 0.03, kStep = 0.6;
   const CollapsePlan& plan = maker.plan();
   const bool shapes = maker.effort() != Effort::fast;
   const Task probes = task.part(shapes ? 0.3 : 0.9, "searching");
-  Search search{start, plan.size() + 1, kNear, {}};
+  Search search{starts.plain, plan.size() + 1, kNear, {}};
   const Result<void> found =
       search.run(plan, limit, plan.size(), [&](std::size_t probe) { return maker.plain(probe, probes.part(0.1)); });
   if (!found) return fail(found.error());
-  if (!search.best || search.best->prefix != search.good) {
-    Result<Cut> cut = maker.plain(search.good, task);
-    if (!cut) return cut;
-    search.simplify_seconds += cut->simplify_seconds;
-    search.measure_seconds += cut->measure_seconds;
-    search.best = std::move(*cut);
+  starts.plain = search.good;
+  if (search.good < starts.shaped) {  // shaped, the last level holds what plain ones there don't
+    search.good = starts.shaped;
+    search.best.reset();
   }
-  if (shapes && search.good < plan.size() && search.best->level.error.measured_error <= limit) {
+  if (shapes && search.good < plan.size()) {
     const Task shaping = task.part(0.7, "searching");
     search.bad = plan.size() + 1;
     search.nearness = kNearShaped;
-    // Steps by the same factor until one fails, then between the last two.
     const auto make = [&](std::size_t probe) { return maker.shaped(probe, shaping.part(0.15), limit); };
-    std::size_t probe = search.good;
-    while (probe < plan.size() && search.bad > plan.size()) {
+    // Steps by the same factor until one fails, then between the last two.
+    for (std::size_t probe = search.good; probe < plan.size() && search.bad > plan.size();) {
       const double next = kStep * static_cast<double>(plan.triangles_after(probe));
-      probe = std::max(probe + 1, plan.prefix_for(static_cast<std::size_t>(next)));
-      probe = std::min(probe, plan.size());
-      Result<Cut> cut = make(probe);
-      if (!cut) return cut;
-      search.simplify_seconds += cut->simplify_seconds;
-      search.measure_seconds += cut->measure_seconds;
-      if (cut->level.error.measured_error <= limit) {
-        search.good = probe;
-        search.best = std::move(*cut);
-      } else {
-        search.bad = probe;
-      }
+      probe = std::min(plan.size(), std::max(probe + 1, plan.prefix_for(static_cast<std::size_t>(next))));
+      if (const Result<void> ok = search.probe(limit, probe, make); !ok) return fail(ok.error());
     }
-    const double fine = static_cast<double>(plan.triangles_after(search.good));
-    const double coarse = static_cast<double>(plan.triangles_after(std::min(plan.size(), search.bad)));
-    if (search.bad <= plan.size() && search.bad > search.good + 1 && fine - coarse > kNearShaped * coarse) {
-      const auto middle = static_cast<std::size_t>(std::sqrt(fine * coarse));
-      const std::size_t first = std::clamp(plan.prefix_for(middle), search.good + 1, search.bad - 1);
-      if (const Result<void> ok = search.run(plan, limit, first, make); !ok) return fail(ok.error());
+    if (const std::size_t next = search.next(plan); next > 0) {
+      if (const Result<void> ok = search.run(plan, limit, next, make); !ok) return fail(ok.error());
     }
+  }
+  if (!search.best || search.best->prefix != search.good) {
+    if (const Result<void> ok = search.take(maker.plain(search.good, task)); !ok) return fail(ok.error());
   }
   Cut best = std::move(*search.best);
   best.simplify_seconds = search.simplify_seconds;
@@ -276,9 +291,10 @@ Result<void> add_count_levels(LadderResult& result, LevelMaker& maker, const std
 Result<void> add_error_levels(LadderResult& result, LevelMaker& maker, const LadderOptions& options, const Task& task) {
   const CollapsePlan& plan = maker.plan();
   std::size_t last = 0;
+  Starts starts;
   for (std::size_t i = 0; i < options.errors.size(); ++i) {
     const Task part = task.part(1.0 / static_cast<double>(options.errors.size()), fmt::format("level {}", i + 1));
-    Result<Cut> cut = find_error_cut(maker, last, options.errors[i], part);
+    Result<Cut> cut = find_error_cut(maker, starts, options.errors[i], part);
     if (!cut) return fail(cut.error());
     const bool holds = cut->level.error.measured_error <= options.errors[i];
     if (cut->prefix == last && !(options.start && i == 0 && holds)) {
@@ -289,7 +305,7 @@ Result<void> add_error_levels(LadderResult& result, LevelMaker& maker, const Lad
       result.measure_seconds += cut->measure_seconds;
       continue;
     }
-    last = cut->prefix;
+    last = starts.shaped = cut->prefix;
     add_level(result, std::move(*cut));
     if (last == plan.size() && i + 1 < options.errors.size()) {
       result.shortfalls.push_back({i + 2, "the level before is the coarsest there is: " + plan.why_it_ends()});
@@ -398,8 +414,9 @@ Result<SimplifyModelResult> simplify_model(const Model& original, const Simplify
   result.measure_seconds = preparing.total();
   const Task rest = task.part(0.4, "measuring");
   LevelMaker maker(*plan, *reference, options.distance, options.effort);
+  Starts starts;
   Result<Cut> cut = by_count ? maker.shaped(plan->prefix_for(options.target_triangles), rest)
-                             : find_error_cut(maker, 0, options.max_error, rest);
+                             : find_error_cut(maker, starts, options.max_error, rest);
   if (!cut) return fail(cut.error());
   result.simplify_seconds += cut->simplify_seconds;
   result.measure_seconds += cut->measure_seconds;

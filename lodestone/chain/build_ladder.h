@@ -54,9 +54,9 @@ struct LadderResult {
 /// Runs edge collapse once on every mesh, merges the collapses by error times the largest instance scale, cuts the
 /// levels from that one record and measures each in world space. A ladder that can't shrink further ends early, with a
 /// shortfall. With an effort above fast each level is shaped by its own measured error, and kept only if neither its
-/// maximum nor its mean (of normal: by more than a hundredth) is above the plain level's; it is no prefix of the record
-/// then, which its method tells, and an error is looked for with shaped levels. Errors: bad_argument, empty (nothing
-/// drawn), cancelled.
+/// maximum nor its mean (of normal: by more than a hundredth; not for errors, which are about maxima) is above the
+/// plain level's; it is no prefix of the record then, which its method tells, and an error is looked for with shaped
+/// levels. Errors: bad_argument, empty (nothing drawn), cancelled.
 Result<LadderResult> build_ladder(Model original, const LadderOptions& options = {}, Task task = {});
 
 struct SimplifyModelOptions {

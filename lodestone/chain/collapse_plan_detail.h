@@ -47,6 +47,9 @@ class CollapsePlan {
   /// `goal`: a maximum error that is enough, world space; 0 = as small as it gets.
   Result<Model> shaped_after(std::size_t count, Effort effort, double goal, FitTargets& targets, Task task) const;
 
+  /// Whether any mesh allows it. O(triangles).
+  bool can_be_shaped() const;
+
   const simplify::LockCounts& locked() const { return locked_; }
   /// Why the plan ends where it ends, in plain words.
   std::string why_it_ends() const;

@@ -54,7 +54,8 @@ void raise_weights(const Mesh& start, const FittedLevel& level, std::vector<floa
       const double worst = all[surface.drawn[closest[v - begin].triangle]].distance;
       if (!(worst > limit)) continue;
       const double ratio = worst / limit, factor = std::min(ratio * ratio * ratio * ratio * ratio * ratio, kMostFactor);
-      weights[v] = static_cast<float>(std::min(static_cast<double>(weights[v]) * factor, kMostWeight));
+      const double raised = std::min(static_cast<double>(weights[v]) * factor, kMostWeight);
+      weights[v] = std::max(weights[v], static_cast<float>(raised));
     }
   });
 }
@@ -90,7 +91,8 @@ Result<FittedLevel> equalized(const ShapeSource& source, const FittedLevel& leve
   const std::size_t triangles = level.mesh().triangles.size();
   const auto most = static_cast<std::size_t>(kSplitShare * static_cast<double>(triangles));
   simplify::SplitResult split =
-      simplify::split_worst(level, kSplit, std::max<std::size_t>(2, most), source.options.keep_border, task);
+      simplify::split_worst(level, kSplit, std::max<std::size_t>(2, most), source.options.keep_border,
+                            at_places(level.mesh(), source.locked_places), task);
   std::sort(split.pulled.begin(), split.pulled.end(), before);
   EdgeCollapseOptions options = source.options;
   options.target_triangles = most_triangles;
@@ -132,6 +134,7 @@ Result<FittedLevel> weighted(const ShapeSource& source, Mesh plain, const Task& 
     raise_weights(source.start, current, options.weights, task);
     Result<simplify::EdgeCollapseResult> made = simplify::collapse_edges(source.start, options, task.part(0.3));
     if (!made) return fail(made.error());
+    if (made->mesh.triangles.empty() || task.cancelled()) break;
     current = FittedLevel(source.target, std::move(made->mesh), task);
     if (current.max() < best.max() && current.mean() <= kMeanSlack * start_mean) best = current;
   }
@@ -148,11 +151,13 @@ Result<FittedLevel> fitted(const ShapeSource& source, Mesh plain, const Task& ta
   simplify::FitOptions fit;
   fit.solves = kSolves;
   // Fitting holds borders and what is not manifold; where these are worst, only collapsing otherwise helps.
-  Result<FittedLevel> start = has_borders(plain, task)
-                                  ? weighted(source, std::move(plain), task)
-                                  : Result<FittedLevel>(FittedLevel(source.target, std::move(plain), task));
-  if (!start) return fail(start.error());
-  FittedLevel best = std::move(*start);
+  FittedLevel best(source.target, std::move(plain), task);
+  const double plain_mean = best.mean();
+  if (has_borders(best.mesh(), task)) {
+    Result<FittedLevel> start = weighted(source, best.mesh(), task);
+    if (!start) return start;
+    best = std::move(*start);
+  }
   if (!source.locked_places.empty()) fit.locked = at_places(best.mesh(), source.locked_places);
   best.fit(fit, task);
   task.advance(0.4);
@@ -160,7 +165,7 @@ Result<FittedLevel> fitted(const ShapeSource& source, Mesh plain, const Task& ta
   if (!source.options.weights.empty()) return best;
   // A maximum that is asked for is worth more rounds, and some of the mean; less of it is worth nothing.
   const bool asked = source.goal > 0;
-  const double most_mean = (asked ? kRoundsMeanForGoal : kRoundsMean) * best.mean();
+  const double most_mean = asked ? kRoundsMeanForGoal * best.mean() : std::min(kRoundsMean * best.mean(), plain_mean);
   const int most_rounds = asked ? 2 * kRounds : kRounds, most_idle = asked ? 2 * kIdleRounds : kIdleRounds;
   FittedLevel current = best;
   for (int round = 0, idle = 0; round < most_rounds && idle < most_idle && !task.cancelled(); ++round) {
@@ -169,7 +174,7 @@ Result<FittedLevel> fitted(const ShapeSource& source, Mesh plain, const Task& ta
         task.part(0.6 / most_rounds, fmt::format("round {}, maximum {}", round + 1, short_number(best.max())));
     Result<FittedLevel> next = equalized(source, current, triangles, part);
     if (!next) return fail(next.error());
-    if (next->mean() > most_mean || next->mesh().triangles.size() > triangles) break;
+    if (next->mesh().triangles.empty() || next->mean() > most_mean || next->mesh().triangles.size() > triangles) break;
     current = std::move(*next);
     ++idle;
     if (!(current.max() < best.max())) continue;

@@ -25,13 +25,11 @@ struct ShapeSource {
   std::vector<Vec3f> locked_places;              ///< of vertices that stay, sorted as before() does
 };
 
-/// A mesh of as many triangles as `level`, which the plain run made, and nearer to the original: `level` itself where
-/// nothing better was found.
-/// normal  `start` is collapsed again, vertices where the level is worst weighing more; twice, the smallest maximum
-/// kept best    vertices are moved and edges turned to where distances are least; then triangles are added where the
-/// level is
-///         worst and taken away where they are missed least, in rounds, the smallest maximum kept
-/// Errors: those of collapse_edges(), cancelled.
+/// A mesh of at most as many triangles as `level`, which the plain run made, and nearer to the original as a rule:
+/// whoever keeps it measures both. With normal effort `start` is collapsed again, vertices where the level is worst
+/// weighing more; twice, the smallest maximum kept. With best, vertices are moved and edges turned to where distances
+/// are least; then triangles are added where the level is worst and taken away where they are missed least, in rounds,
+/// the smallest maximum kept. Errors: those of collapse_edges(), cancelled.
 Result<Mesh> shape_level(const ShapeSource& source, Mesh level, Effort effort, const Task& task);
 
 }  // namespace lodestone::chain::detail

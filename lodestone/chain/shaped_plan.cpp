@@ -4,6 +4,7 @@
 
 #include "lodestone/chain/collapse_plan_detail.h"
 #include "lodestone/chain/feedback_detail.h"
+#include "lodestone/math/triangle.h"
 
 namespace lodestone::chain::detail {
 
@@ -23,6 +24,22 @@ bool is_similarity(const Mat4d& placing) {
          std::abs(dot(y, z)) <= slack && std::abs(dot(z, x)) <= slack;
 }
 
+// Closest points among thousands of slivers, long and all but without width, take a thousand times as long.
+bool has_many_slivers(const Mesh& mesh) {
+  constexpr std::size_t kMany = 1000;
+  constexpr double kLong = 0.01, kWidth = 1e-5;  // of the diagonal
+  const double diagonal = bounds_of(mesh).diagonal();
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle v = mesh.vertices_of(t);
+    const Vec3d p[3] = {mesh.position(v[0]), mesh.position(v[1]), mesh.position(v[2])};
+    const double longest = std::max({length(p[1] - p[0]), length(p[2] - p[1]), length(p[0] - p[2])});
+    if (longest <= kLong * diagonal) continue;
+    count += length(scaled_normal(p[0], p[1], p[2])) < kWidth * diagonal * longest ? 1 : 0;
+  }
+  return count > kMany;
+}
+
 std::vector<Vec3f> places_of(const Mesh& mesh, const std::vector<std::uint8_t>& marked) {
   std::vector<Vec3f> places;
   for (std::size_t v = 0; v < marked.size(); ++v) {
@@ -34,8 +51,16 @@ std::vector<Vec3f> places_of(const Mesh& mesh, const std::vector<std::uint8_t>& 
 
 }  // namespace
 
+bool CollapsePlan::can_be_shaped() const {
+  for (std::size_t m = 0; m < logs_.size(); ++m) {
+    if (can_be_shaped(m)) return true;
+  }
+  return false;
+}
+
 bool CollapsePlan::can_be_shaped(std::size_t m) const {
-  return logs_[m].start_triangles > 0 && untouched_.empty() && !prunes_ && is_similarity(placings_[m]);
+  return logs_[m].start_triangles > 0 && untouched_.empty() && !prunes_ && is_similarity(placings_[m]) &&
+         std::isfinite(bounds_of(mesh(m)).diagonal()) && !has_many_slivers(mesh(m));
 }
 
 Result<Mesh> CollapsePlan::shaped(std::size_t m, Mesh plain, Effort effort, double goal, FitTargets& targets,

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include "lodestone/base/parallel.h"
 #include "lodestone/core/adjacency.h"
+#include "lodestone/math/triangle.h"
 #include "lodestone/simplify/fit_attributes_detail.h"
 #include "lodestone/simplify/fit_flip_detail.h"
 #include "lodestone/simplify/fit_solve_detail.h"
 #include "lodestone/simplify/fit_ties_detail.h"
+#include "lodestone/spatial/closest_batch.h"
 
 namespace lodestone::simplify {
 
@@ -57,6 +60,28 @@ detail::FixedSides fixed_sides(const Mesh& mesh, const Task& task) {
     if (!inner) fixed.emplace_back(edge.a, edge.b);
   }
   return fixed;
+}
+
+// Where each face should look: as the original does at the point closest to its middle, or, where that looks away from
+// it (the other side of something thin), as it looks now. Of length 1.
+std::vector<Vec3d> facing_of(const FitTarget& target, const spatial::Surface& level, const Task& task) {
+  std::vector<Vec3d> facing(level.triangles.size());
+  parallel_for(facing.size(), 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<Vec3d> middles;
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto [a, b, c] = level.corners(t);
+      middles.push_back((a + b + c) / 3.0);
+    }
+    std::vector<spatial::Nearest> closest(middles.size());
+    spatial::ClosestBatch(target.tree()).find(middles, closest);
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto [a, b, c] = level.corners(t);
+      const auto [x, y, z] = target.surface().corners(closest[t - begin].triangle);
+      const Vec3d own = normalized(scaled_normal(a, b, c)), theirs = normalized(scaled_normal(x, y, z));
+      facing[t] = dot(own, theirs) > 0 ? theirs : own;
+    }
+  });
+  return facing;
 }
 
 bool has_look(const Mesh& mesh) {
@@ -122,25 +147,28 @@ void FittedLevel::fit(const FitOptions& options, const Task& task) {
   detail::FixedSides fixed;
   for (const auto& [a, b] : fixed_sides(mesh, task)) {
     const std::uint32_t x = surface_vertex[a], y = surface_vertex[b];
+    if (x == kNone || y == kNone) continue;
     held[x] = held[y] = 1;
     fixed.emplace_back(std::min(x, y), std::max(x, y));
   }
   std::sort(fixed.begin(), fixed.end());
+  if (task.cancelled()) return;
   std::vector<Triangle> wedges;
   for (const std::uint32_t t : known.level.drawn) wedges.push_back(mesh.triangles[t]);
   const bool flips = options.flips && !has_look(mesh);
   const double damping = has_look(mesh) ? kDampingWithLook : kDamping;
+  std::vector<Vec3d> facing = facing_of(target, known.level, task);
   for (int solve = 0; solve < options.solves && !task.cancelled(); ++solve) {
     detail::Known before = known;
     const std::vector<Triangle> wedges_before = wedges;
     if (flips && solve > 0) {
-      detail::retie(target, known.level, detail::flip_edges(target, known.ties, fixed, held, known.level, wedges, task),
-                    known.ties, task);
+      const auto turned = detail::flip_edges(target, known.ties, fixed, held, known.level, wedges, task);
+      for (const auto& [t, u] : turned) facing[t] = facing[u] = facing[t] + facing[u];
+      detail::retie(target, known.level, turned, known.ties, task);
     }
     const detail::CornersAt around = detail::corners_at(known.level);
-    detail::take_moves(known.level, around, detail::solve_moves(known.level, known.ties, around, held, damping, task),
-                       task);
-    for (Vec3d& p : known.level.positions) p = to_double(to_float(p - mesh.offset)) + mesh.offset;
+    std::vector<Vec3d> moves = detail::solve_moves(known.level, known.ties, around, held, damping, task);
+    detail::take_moves(known.level, around, std::move(moves), facing, mesh.offset, task);
     known.ties = detail::make_ties(target, known.level, task, options.locked.empty() ? nullptr : &before);
     if (!(known.ties.energy < before.ties.energy)) {
       known = std::move(before);
@@ -151,7 +179,7 @@ void FittedLevel::fit(const FitOptions& options, const Task& task) {
   detail::look_at_worst(target, known.level, suspect_share(target), known.ties, task);
   const std::vector<Vec3f> positions_before = mesh.positions;
   for (std::size_t v = 0; v < state_->mesh_vertex.size(); ++v) {
-    mesh.positions[state_->mesh_vertex[v]] = to_float(known.level.positions[v] - mesh.offset);
+    if (held[v] == 0) mesh.positions[state_->mesh_vertex[v]] = to_float(known.level.positions[v] - mesh.offset);
   }
   for (std::size_t t = 0; t < wedges.size(); ++t) mesh.triangles[known.level.drawn[t]] = wedges[t];
   detail::carry_attributes(target, positions_before, mesh, task);

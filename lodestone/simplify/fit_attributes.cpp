@@ -104,12 +104,29 @@ void carry(const AttributeStream& original, const std::vector<T>& from, std::uin
   }
 }
 
+// For each stream of the level that is carried, that of the original; null for the others. Levels may have fewer.
+std::vector<const AttributeStream*> partners(const Mesh& original, const Mesh& level) {
+  std::vector<const AttributeStream*> found;
+  for (const AttributeStream& own : level.attributes) {
+    found.push_back(nullptr);
+    if (!is_carried(own)) continue;
+    for (const AttributeStream& other : original.attributes) {
+      if (other.semantic == own.semantic && other.set == own.set && other.name == own.name &&
+          other.components == own.components) {
+        found.back() = &other;
+      }
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 void carry_attributes(const FitTarget& target, const std::vector<Vec3f>& before, Mesh& level, const Task& task) {
   const Mesh& original = target.original();
-  if (original.attributes.size() != level.attributes.size() || target.charts().empty()) return;
+  if (target.charts().empty()) return;
   if (std::none_of(level.attributes.begin(), level.attributes.end(), is_carried)) return;
+  const std::vector<const AttributeStream*> sources = partners(original, level);
   const TrianglesAt triangles(level);
   const std::vector<AttributeStream> old = level.attributes;  // what neighbours had
   parallel_for(level.wedge_count(), 1024, task, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -121,8 +138,8 @@ void carry_attributes(const FitTarget& target, const std::vector<Vec3f>& before,
       const Spot now = spot_of(target, level.position(vertex));
       if (target.charts()[then.wedges[0]] != target.charts()[now.wedges[0]]) continue;
       for (std::size_t s = 0; s < level.attributes.size(); ++s) {
-        const AttributeStream& stream = original.attributes[s];
-        if (!is_carried(stream)) continue;
+        if (sources[s] == nullptr) continue;
+        const AttributeStream& stream = *sources[s];
         std::visit(
             [&](auto& to) {
               using Values = std::remove_reference_t<decltype(to)>;

@@ -84,7 +84,7 @@ Element element_of(const spatial::Surface& level, const Ties& ties, std::size_t 
   return e;
 }
 
-// Does a face turn too far, or lie on its neighbour across side k?
+// Does a face turn too far?
 bool turns(Vec3d before, Vec3d after) {
   const double lengths = length(before) * length(after);
   return !(dot(before, after) >= kTurn * lengths);
@@ -185,7 +185,8 @@ std::vector<Vec3d> solve_moves(const spatial::Surface& level, const Ties& ties, 
   return moves;
 }
 
-void take_moves(spatial::Surface& level, const CornersAt& around, std::vector<Vec3d> moves, const Task& task) {
+void take_moves(spatial::Surface& level, const CornersAt& around, std::vector<Vec3d> moves,
+                std::span<const Vec3d> facing, Vec3d offset, const Task& task) {
   constexpr int kHalvings = 5;
   const std::vector<std::array<std::uint32_t, 3>> neighbors = spatial::triangle_neighbors(level);
   const std::vector<Vec3d> before = level.positions;
@@ -197,16 +198,24 @@ void take_moves(spatial::Surface& level, const CornersAt& around, std::vector<Ve
   };
   for (std::size_t t = 0; t < n; ++t) old_normals[t] = normal_of(t);
   std::vector<std::uint8_t> bad(n);
-  for (int round = 0; round <= kHalvings + 1 && !task.cancelled(); ++round) {
+  for (int round = 0; !task.cancelled(); ++round) {  // ends: from the last halving on, moves only vanish
     parallel_for(level.positions.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
-      for (std::size_t v = begin; v < end; ++v) level.positions[v] = before[v] + moves[v];
+      for (std::size_t v = begin; v < end; ++v) {
+        if (moves[v] != Vec3d{})
+          level.positions[v] = to_double(to_float(before[v] + moves[v] - offset)) + offset;
+        else
+          level.positions[v] = before[v];
+      }
     });
     parallel_for(n, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t t = begin; t < end; ++t) normals[t] = normal_of(t);
     });
     parallel_for(n, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t t = begin; t < end; ++t) {
-        bad[t] = turns(old_normals[t], normals[t]) ? 1 : 0;
+        bad[t] =
+            turns(old_normals[t], normals[t]) || (turns(facing[t], normals[t]) && !turns(facing[t], old_normals[t]))
+                ? 1
+                : 0;
         for (const std::uint32_t other : neighbors[t]) {
           if (bad[t] != 0 || other == kNone) continue;
           const double lengths = length(normals[t]) * length(normals[other]);

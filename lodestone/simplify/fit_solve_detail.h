@@ -22,7 +22,10 @@ std::vector<Vec3d> solve_moves(const spatial::Surface& level, const Ties& ties, 
                                std::span<const std::uint8_t> held, double damping, const Task& task);
 
 /// Takes the moves, halved where a face would turn by more than some 70 degrees or fold onto a neighbour, until none
-/// does; a vertex that does even then stays.
-void take_moves(spatial::Surface& level, const CornersAt& around, std::vector<Vec3d> moves, const Task& task);
+/// does; a vertex that does even then stays. The same where a face would turn away from where it should
+/// look (`facing`, one a triangle): small steps must not add up. Positions are rounded to floats relative
+/// to `offset`, as a mesh keeps them.
+void take_moves(spatial::Surface& level, const CornersAt& around, std::vector<Vec3d> moves,
+                std::span<const Vec3d> facing, Vec3d offset, const Task& task);
 
 }  // namespace lodestone::simplify::detail

@@ -234,7 +234,7 @@ class NearMask {
       }
       for (std::uint32_t z = low[2]; z <= high[2]; ++z) {
         for (std::uint32_t y = low[1]; y <= high[1]; ++y) {
-          for (std::uint32_t x = low[0]; x <= high[0]; ++x) rows_[z * kCells + y] |= std::uint64_t{1} << x;
+          rows_[z * kCells + y] |= (~std::uint64_t{0} >> (63 - (high[0] - low[0]))) << low[0];
         }
       }
     }

@@ -5,6 +5,7 @@
 
 #include "lodestone/core/adjacency.h"
 #include "lodestone/core/blend.h"
+#include "lodestone/math/triangle.h"
 #include "lodestone/simplify/fit_attributes_detail.h"
 
 namespace lodestone::simplify {
@@ -29,7 +30,9 @@ std::uint32_t add_wedge(Mesh& mesh, std::uint32_t vertex, std::uint32_t from) {
 }
 
 constexpr double kPull = 0.5;
-constexpr double kNearSide = 0.15;  // a corner's weight below which the place is on the side across
+constexpr double kIsVertex = 0.999;  // a corner's weight above which the place is that vertex
+constexpr double kTurn = 0.3;        // cosine: a face may not turn farther
+constexpr double kNearSide = 0.15;   // a corner's weight below which the place is on the side across
 
 // A new vertex on a side or within a triangle: wedge `own` becomes its values, step by step.
 struct Mix {
@@ -39,17 +42,18 @@ struct Mix {
 
 class Splitter {
  public:
-  Splitter(const FittedLevel& level, bool keep_borders, const Task& task)
+  Splitter(const FittedLevel& level, bool keep_borders, std::span<const std::uint8_t> stays, const Task& task)
       : level_(level),
         task_(task),
         keep_borders_(keep_borders),
         mesh_(level.mesh()),
         edges_(edge_triangles(mesh_, task)),
+        around_(vertex_triangles(mesh_)),
         touched_(mesh_.triangles.size(), 0),
-        pulled_(mesh_.vertex_count(), 0),
-        stays_(mesh_.vertex_count(), 0) {
+        stays_(stays.begin(), stays.end()) {
+    stays_.resize(mesh_.vertex_count(), 0);
     for (const Edge& edge : edges_.edges) {
-      if (!may_split(edge)) stays_[edge.a] = stays_[edge.b] = 1;
+      if (edge.count == 1 ? keep_borders : !is_smooth(edge)) stays_[edge.a] = stays_[edge.b] = 1;
     }
   }
 
@@ -60,7 +64,7 @@ class Splitter {
     const auto corner = static_cast<std::size_t>(std::min_element(weights, weights + 3) - weights);
     const std::size_t next = (corner + 1) % 3, last = (corner + 2) % 3;
     for (std::size_t k = 0; k < 3; ++k) {
-      if (weights[k] > 1 - kNearSide) return pull_in(mesh_.vertex_of(mesh_.triangles[t][k]), worst);
+      if (weights[k] > kIsVertex) return pull_in(mesh_.vertex_of(mesh_.triangles[t][k]), worst);
     }
     if (weights[corner] > kNearSide) return split_face(t, worst);
     const double both = weights[next] + weights[last];
@@ -79,6 +83,45 @@ class Splitter {
  private:
   bool may_split(const Edge& edge) const { return edge.count == 2 || (edge.count == 1 && !keep_borders_); }
 
+  // Two triangles with the same wedges and material on both sides.
+  bool is_smooth(const Edge& edge) const {
+    if (edge.count != 2) return false;
+    const auto around = edges_.of(edge);
+    if (mesh_.group_of(around[0]) != mesh_.group_of(around[1])) return false;
+    std::uint32_t wedge[2][2] = {};
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (const std::uint32_t w : mesh_.triangles[around[i]]) {
+        if (mesh_.vertex_of(w) == edge.a) wedge[i][0] = w;
+        if (mesh_.vertex_of(w) == edge.b) wedge[i][1] = w;
+      }
+    }
+    return wedge[0][0] == wedge[1][0] && wedge[0][1] == wedge[1][1];
+  }
+
+  Vec3d normal_of(const Triangle& wedges, std::uint32_t moved, Vec3d to) const {
+    std::array<Vec3d, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh_.vertex_of(wedges[k]);
+      p[k] = v == moved ? to : mesh_.position(v);
+    }
+    return scaled_normal(p[0], p[1], p[2]);
+  }
+  static bool looks_alike(Vec3d before, Vec3d after) {
+    return dot(before, after) > kTurn * length(before) * length(after);
+  }
+  // Whether a triangle may be cut into those that have `place` for one of these corners each.
+  bool may_cut(std::uint32_t t, std::initializer_list<std::size_t> corners, Vec3d place) const {
+    const Triangle v = mesh_.vertices_of(t);
+    std::array<Vec3d, 3> p{mesh_.position(v[0]), mesh_.position(v[1]), mesh_.position(v[2])};
+    const Vec3d before = scaled_normal(p[0], p[1], p[2]);
+    for (const std::size_t k : corners) {
+      std::array<Vec3d, 3> q = p;
+      q[k] = place;
+      if (!looks_alike(before, scaled_normal(q[0], q[1], q[2]))) return false;
+    }
+    return true;
+  }
+
   std::uint32_t add_vertex(Vec3d place) {
     const auto vertex = static_cast<std::uint32_t>(mesh_.positions.size());
     mesh_.positions.push_back(to_float(place - mesh_.offset));
@@ -91,14 +134,20 @@ class Splitter {
 
   // A vertex that sticks out goes half of the way.
   std::size_t pull_in(std::uint32_t vertex, const FittedLevel::Worst& worst) {
-    if (pulled_[vertex] != 0 || stays_[vertex] != 0) return 0;
-    pulled_[vertex] = 1;
-    mesh_.positions[vertex] = to_float(lerp(mesh_.position(vertex), worst.partner, kPull) - mesh_.offset);
+    if (stays_[vertex] != 0) return 0;
+    const Vec3d place = lerp(mesh_.position(vertex), worst.partner, kPull);
+    for (const std::uint32_t t : around_.of(vertex)) {
+      const Triangle& w = mesh_.triangles[t];
+      if (touched_[t] != 0 || !looks_alike(normal_of(w, kNone, {}), normal_of(w, vertex, place))) return 0;
+    }
+    for (const std::uint32_t t : around_.of(vertex)) touched_[t] = 1;
+    mesh_.positions[vertex] = to_float(place - mesh_.offset);
     moved_.push_back(mesh_.positions[vertex]);
     return 1;
   }
 
   std::size_t split_face(std::uint32_t t, const FittedLevel::Worst& worst) {
+    if (!may_cut(t, {0, 1, 2}, worst.partner)) return 0;
     touched_[t] = 1;
     const Triangle w = mesh_.triangles[t];
     const std::uint32_t wedge = add_wedge(mesh_, add_vertex(worst.partner), w[0]);
@@ -123,7 +172,10 @@ class Splitter {
     if (found == edges_.edges.end() || found->a != a || found->b != b || !may_split(*found)) return 0;
     const auto around = edges_.of(*found);
     for (const std::uint32_t u : around) {
-      if (touched_[u] != 0) return 0;
+      const Triangle w = mesh_.vertices_of(u);
+      std::size_t side = 0;
+      while (std::minmax(w[side], w[(side + 1) % 3]) != std::minmax(a, b)) ++side;
+      if (touched_[u] != 0 || !may_cut(u, {side, (side + 1) % 3}, place)) return 0;
     }
     const std::uint32_t vertex = add_vertex(place);
     std::uint32_t made[2][3] = {};  // wedge, from, to
@@ -156,15 +208,17 @@ class Splitter {
   bool keep_borders_;
   Mesh mesh_;
   EdgeTriangles edges_;  // of the level as it was
+  VertexTriangles around_;
   std::vector<std::uint8_t> touched_;
-  std::vector<std::uint8_t> pulled_, stays_;  // of the level's vertices
+  std::vector<std::uint8_t> stays_;  // of the level's vertices
   std::vector<Vec3f> moved_;
   std::vector<Mix> mixes_;
 };
 
 }  // namespace
 
-SplitResult split_worst(const FittedLevel& level, double share, std::size_t most, bool keep_borders, const Task& task) {
+SplitResult split_worst(const FittedLevel& level, double share, std::size_t most, bool keep_borders,
+                        std::span<const std::uint8_t> stays, const Task& task) {
   const std::vector<FittedLevel::Worst> worst = level.worst();
   std::vector<std::uint32_t> order;
   for (std::uint32_t t = 0; t < worst.size(); ++t) {
@@ -172,7 +226,8 @@ SplitResult split_worst(const FittedLevel& level, double share, std::size_t most
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return worst[a].distance > worst[b].distance; });
-  Splitter splitter(level, keep_borders, task);
+  if (task.cancelled()) return {level.mesh(), {}};
+  Splitter splitter(level, keep_borders, stays, task);
   std::size_t added = 0;
   for (const std::uint32_t t : order) {
     if (added >= most) break;

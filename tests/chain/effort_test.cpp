@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "lodestone/chain/build_ladder.h"
@@ -119,6 +120,57 @@ TEST(Effort, ladders_stay_in_order) {
       EXPECT_GE(levels[i].error.error, levels[i - 1].error.error);
       EXPECT_GE(levels[i].error.measured_error, levels[i - 1].error.measured_error) << "no level worse than the next";
     }
+  }
+}
+
+// A level that holds its error only because it is shaped must not end the ladder.
+TEST(Effort, errors_that_are_near_each_other_give_a_level_each) {
+  LadderOptions options;
+  options.distance.samples = 20'000;
+  options.errors = {0.01, 0.014, 0.02};
+  for (const Effort effort : {Effort::fast, Effort::best}) {
+    options.effort = effort;
+    const auto made = build_ladder(bumpy(60), options);
+    ASSERT_TRUE(made);
+    EXPECT_EQ(made->ladder.levels.size(), 4U) << made->shortfalls.size();
+    for (std::size_t i = 1; i < made->ladder.levels.size(); ++i) {
+      EXPECT_LE(made->ladder.levels[i].error.measured_error, options.errors[i - 1]);
+      EXPECT_LT(made->ladder.levels[i].triangles, made->ladder.levels[i - 1].triangles);
+    }
+  }
+}
+
+// Faces of a star-shaped solid look away from its middle; moving must not turn more of them inward.
+TEST(Effort, turns_no_face_inward) {
+  const auto inward = [](Effort effort) {
+    const SimplifyModelResult made = simplified(bumpy(60), to_triangles(700), effort);
+    const Mesh& mesh = made.level.model.meshes.front();
+    std::size_t count = 0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const Triangle v = mesh.vertices_of(t);
+      const Vec3d a = mesh.position(v[0]), b = mesh.position(v[1]), c = mesh.position(v[2]);
+      count += dot(cross(b - a, c - a), a + b + c) > 0 ? 0 : 1;
+    }
+    return count;
+  };
+  EXPECT_LE(inward(Effort::best), inward(Effort::fast));
+}
+
+TEST(Effort, can_be_cancelled_while_shaping) {
+  SimplifyModelOptions options = to_triangles(2000);
+  options.effort = Effort::best;
+  options.distance.samples = 1000;
+  for (const char* when : {"shaping", "round 1"}) {
+    std::atomic<bool> seen = false;
+    Task task;
+    task = Task::root([&](double, const std::string& label) {
+      if (label.find(when) == std::string::npos || seen.exchange(true)) return;
+      task.cancel();
+    });
+    const auto made = simplify_model(bumpy(80), options, task);
+    if (!seen) continue;  // labels are told at times only
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, ErrorCode::cancelled);
   }
 }
 

@@ -40,6 +40,32 @@ TEST(Fit, brings_a_level_nearer_and_keeps_it_whole) {
   EXPECT_NEAR(volume_of(level.mesh()), volume_of(original), 0.002 * volume_of(original));
 }
 
+std::size_t inward(const Mesh& mesh) {
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle v = mesh.vertices_of(t);
+    const Vec3d a = mesh.position(v[0]), b = mesh.position(v[1]), c = mesh.position(v[2]);
+    count += dot(cross(b - a, c - a), a + b + c) > 0 ? 0 : 1;
+  }
+  return count;
+}
+
+// Faces of a star-shaped solid look away from its middle.
+TEST(Fit, turns_no_face_inward) {
+  const Mesh original = bumpy(60);
+  const FitTarget target(original);
+  for (const bool flips : {false, true}) {
+    FittedLevel level(target, collapsed(original, 700), {});
+    for (int i = 1; i < 12; ++i) {
+      FitOptions options;
+      options.solves = 1 + (flips ? 1 : 0);
+      options.flips = flips;
+      level.fit(options, {});
+      EXPECT_EQ(inward(level.mesh()), 0U) << flips << " " << i;
+    }
+  }
+}
+
 TEST(Fit, leaves_borders_seams_and_locked_vertices) {
   const Mesh original = test::with_uv_seam(test::grid(40, 0.1F));
   const FitTarget target(original);
@@ -118,7 +144,7 @@ TEST(SplitWorst, adds_triangles_and_keeps_the_surface_whole) {
   const Mesh original = bumpy(60);
   const FitTarget target(original);
   const FittedLevel level(target, collapsed(original, 700), {});
-  const SplitResult split = split_worst(level, 0.5, 40, false, {});
+  const SplitResult split = split_worst(level, 0.5, 40, false, {}, {});
   EXPECT_GT(split.mesh.triangles.size(), level.mesh().triangles.size());
   EXPECT_LE(split.mesh.triangles.size(), level.mesh().triangles.size() + 41);
   const Topology t = topology_of(split.mesh);
