@@ -30,9 +30,8 @@ std::uint32_t add_wedge(Mesh& mesh, std::uint32_t vertex, std::uint32_t from) {
 }
 
 constexpr double kPull = 0.5;
-constexpr double kIsVertex = 0.999;  // a corner's weight above which the place is that vertex
-constexpr double kTurn = 0.3;        // cosine: a face may not turn farther
-constexpr double kNearSide = 0.15;   // a corner's weight below which the place is on the side across
+constexpr double kTurn = 0.3;       // cosine: a face may not turn farther
+constexpr double kNearSide = 0.15;  // a corner's weight below which the place is on the side across
 
 // A new vertex on a side or within a triangle: wedge `own` becomes its values, step by step.
 struct Mix {
@@ -57,18 +56,14 @@ class Splitter {
     }
   }
 
-  // How many triangles were added.
+  // How many triangles were added; 1 for a vertex that was pulled. All of the way to the original, or half or a fourth
+  // of it where faces would turn too far; fitting goes on from there.
   std::size_t split(std::uint32_t t, const FittedLevel::Worst& worst) {
-    if (touched_[t] != 0) return 0;
-    const double weights[3] = {1 - worst.second - worst.third, worst.second, worst.third};
-    const auto corner = static_cast<std::size_t>(std::min_element(weights, weights + 3) - weights);
-    const std::size_t next = (corner + 1) % 3, last = (corner + 2) % 3;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (weights[k] > kIsVertex) return pull_in(mesh_.vertex_of(mesh_.triangles[t][k]), worst);
+    for (const double way : {1.0, 0.5, 0.25}) {
+      if (touched_[t] != 0) return 0;
+      if (const std::size_t added = split(t, worst, way); added > 0) return added;
     }
-    if (weights[corner] > kNearSide) return split_face(t, worst);
-    const double both = weights[next] + weights[last];
-    return split_side(t, next, both > 0 ? weights[last] / both : 0.5, worst.partner);
+    return 0;
   }
 
   SplitResult finish() {
@@ -81,6 +76,23 @@ class Splitter {
   }
 
  private:
+  std::size_t split(std::uint32_t t, const FittedLevel::Worst& worst, double way) {
+    const Triangle v = mesh_.vertices_of(t);
+    const double weights[3] = {1 - worst.second - worst.third, worst.second, worst.third};
+    Vec3d at{};
+    for (std::size_t k = 0; k < 3; ++k) at += mesh_.position(v[k]) * weights[k];
+    const Vec3d move = (worst.partner - at) * way;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (weights[k] > 1 - kNearSide) return pull_in(v[k], move * kPull);
+    }
+    const auto corner = static_cast<std::size_t>(std::min_element(weights, weights + 3) - weights);
+    const std::size_t next = (corner + 1) % 3, last = (corner + 2) % 3;
+    if (weights[corner] > kNearSide) return split_face(t, worst, at + move);
+    const double share = weights[last] / (weights[next] + weights[last]);
+    const Vec3d on_side = lerp(mesh_.position(v[next]), mesh_.position(v[last]), share);
+    return split_side(t, next, share, on_side + (worst.partner - on_side) * way);
+  }
+
   bool may_split(const Edge& edge) const { return edge.count == 2 || (edge.count == 1 && !keep_borders_); }
 
   // Two triangles with the same wedges and material on both sides.
@@ -132,10 +144,10 @@ class Splitter {
     if (!mesh_.face_group.empty()) mesh_.face_group.push_back(mesh_.face_group[like]);
   }
 
-  // A vertex that sticks out goes half of the way.
-  std::size_t pull_in(std::uint32_t vertex, const FittedLevel::Worst& worst) {
+  // A vertex that sticks out goes that far.
+  std::size_t pull_in(std::uint32_t vertex, Vec3d move) {
     if (stays_[vertex] != 0) return 0;
-    const Vec3d place = lerp(mesh_.position(vertex), worst.partner, kPull);
+    const Vec3d place = mesh_.position(vertex) + move;
     for (const std::uint32_t t : around_.of(vertex)) {
       const Triangle& w = mesh_.triangles[t];
       if (touched_[t] != 0 || !looks_alike(normal_of(w, kNone, {}), normal_of(w, vertex, place))) return 0;
@@ -146,11 +158,11 @@ class Splitter {
     return 1;
   }
 
-  std::size_t split_face(std::uint32_t t, const FittedLevel::Worst& worst) {
-    if (!may_cut(t, {0, 1, 2}, worst.partner)) return 0;
+  std::size_t split_face(std::uint32_t t, const FittedLevel::Worst& worst, Vec3d place) {
+    if (!may_cut(t, {0, 1, 2}, place)) return 0;
     touched_[t] = 1;
     const Triangle w = mesh_.triangles[t];
-    const std::uint32_t wedge = add_wedge(mesh_, add_vertex(worst.partner), w[0]);
+    const std::uint32_t wedge = add_wedge(mesh_, add_vertex(place), w[0]);
     const double first_two = 1 - worst.third;
     mixes_.push_back({wedge, w[1], static_cast<float>(first_two > 0 ? worst.second / first_two : 0)});
     mixes_.push_back({wedge, w[2], static_cast<float>(worst.third)});
