@@ -134,6 +134,15 @@ class Splitter {
     return true;
   }
 
+  // Which side of a triangle lies between two of its vertices: the one that the third is across.
+  std::size_t side_between(std::uint32_t t, std::uint32_t a, std::uint32_t b) const {
+    const Triangle v = mesh_.vertices_of(t);
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (v[k] != a && v[k] != b) return (k + 1) % 3;
+    }
+    return 0;
+  }
+
   std::uint32_t add_vertex(Vec3d place) {
     const auto vertex = static_cast<std::uint32_t>(mesh_.positions.size());
     mesh_.positions.push_back(to_float(place - mesh_.offset));
@@ -183,11 +192,11 @@ class Splitter {
                                         });
     if (found == edges_.edges.end() || found->a != a || found->b != b || !may_split(*found)) return 0;
     const auto around = edges_.of(*found);
+    if (around.size() == 2 && around[0] == around[1]) return 0;
     for (const std::uint32_t u : around) {
-      const Triangle w = mesh_.vertices_of(u);
-      std::size_t side = 0;
-      while (std::minmax(w[side], w[(side + 1) % 3]) != std::minmax(a, b)) ++side;
-      if (touched_[u] != 0 || !may_cut(u, {side, (side + 1) % 3}, place)) return 0;
+      if (touched_[u] != 0) return 0;  // it may have been cut and have this side no more
+      const std::size_t side = side_between(u, a, b);
+      if (!may_cut(u, {side, (side + 1) % 3}, place)) return 0;
     }
     const std::uint32_t vertex = add_vertex(place);
     std::uint32_t made[2][3] = {};  // wedge, from, to
@@ -195,8 +204,7 @@ class Splitter {
     for (const std::uint32_t u : around) {
       touched_[u] = 1;
       const Triangle w = mesh_.triangles[u];
-      std::size_t side = 0;
-      while (std::minmax(mesh_.vertex_of(w[side]), mesh_.vertex_of(w[(side + 1) % 3])) != std::minmax(a, b)) ++side;
+      const std::size_t side = side_between(u, a, b);
       const std::uint32_t from = w[side], to = w[(side + 1) % 3], third = w[(side + 2) % 3];
       std::uint32_t wedge = kNone;
       for (std::size_t i = 0; i < count; ++i) {

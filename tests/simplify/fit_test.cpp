@@ -152,6 +152,19 @@ TEST(SplitWorst, adds_triangles_and_keeps_the_surface_whole) {
   EXPECT_EQ(t.vertices, t.triangles / 2 + 2) << "a sphere still";
 }
 
+TEST(SplitWorst, of_neighbours_that_have_been_cut) {
+  const Mesh original = bumpy(60);
+  const FitTarget target(original);
+  for (const std::size_t triangles : {200, 700, 2000}) {
+    const FittedLevel level(target, collapsed(original, triangles), {});
+    const SplitResult split = split_worst(level, 0, level.mesh().triangles.size(), false, {}, {});
+    EXPECT_GT(split.mesh.triangles.size(), level.mesh().triangles.size());
+    const Topology t = topology_of(split.mesh);
+    EXPECT_TRUE(t.closed && t.manifold);
+    EXPECT_EQ(t.vertices, t.triangles / 2 + 2) << "a sphere still";
+  }
+}
+
 TEST(Fit, of_nothing_much) {
   for (const Mesh& mesh : {test::tetrahedron(), test::cube(), test::grid(2), test::moebius(12), test::bow_tie(),
                            test::three_faces_on_an_edge(), test::soup(3, 30, 60)}) {
