@@ -102,7 +102,8 @@ class LevelMaker {
     return measured(std::move(cut), prefix, std::move(*model), Effort::fast, task.part(0.7));
   }
 
-  /// The same shaped by its error, if that is better; else the plain one. With a goal a larger mean is no matter.
+  /// The same shaped by its error, if that is better; else the plain one. With a goal fewer triangles within it are
+  /// better.
   Result<Cut> shaped(std::size_t prefix, const Task& task, double goal = 0) {
     Result<Cut> cut = plain(prefix, task.part(effort_ == Effort::fast ? 1.0 : 0.2));
     if (!cut || effort_ == Effort::fast || prefix == 0) return cut;
@@ -114,12 +115,7 @@ class LevelMaker {
     shaping.measure_seconds = cut->measure_seconds;
     Result<Cut> made = measured(std::move(shaping), prefix, std::move(*model), effort_, task.part(0.2));
     if (!made) return made;
-    const LevelError &now = made->level.error, &then = cut->level.error;
-    const double slack = effort_ == Effort::normal ? kMeanSlack : 1;
-    const bool no_worse =
-        now.measured_error <= then.measured_error && (goal > 0 || now.mean_error <= slack * then.mean_error);
-    const bool better = now.measured_error < then.measured_error || now.mean_error < then.mean_error;
-    if (no_worse && better && made->level.triangles <= cut->level.triangles) return made;
+    if (is_better(*made, *cut, goal)) return made;
     cut->simplify_seconds = made->simplify_seconds;
     cut->measure_seconds = made->measure_seconds;
     cut->level.seconds = cut->simplify_seconds + cut->measure_seconds;
@@ -128,6 +124,15 @@ class LevelMaker {
 
  private:
   static constexpr double kMeanSlack = 1.01;
+
+  bool is_better(const Cut& made, const Cut& plain, double goal) const {
+    const LevelError &now = made.level.error, &then = plain.level.error;
+    if (made.level.triangles > plain.level.triangles) return false;
+    if (goal > 0) return now.measured_error <= goal;
+    const double slack = effort_ == Effort::normal ? kMeanSlack : 1;
+    const bool no_worse = now.measured_error <= then.measured_error && now.mean_error <= slack * then.mean_error;
+    return no_worse && (now.measured_error < then.measured_error || now.mean_error < then.mean_error);
+  }
 
   Result<Cut> measured(Cut cut, std::size_t prefix, Model model, Effort effort, const Task& task) const {
     const Stopwatch measuring;
@@ -207,11 +212,32 @@ struct Starts {
   std::size_t shaped = 0;  // the prefix of the last level
 };
 
+// Shapes a level to as few triangles as `limit` allows. Fitting brings one that is somewhat coarser than the plain one
+// within the limit, and collapses that were not limited one by one make better triangles: that start first.
+Result<void> shape_fewest(LevelMaker& maker, Search& search, double limit, const Task& task) {
+  constexpr double kCoarserStart = 0.8;
+  const CollapsePlan& plan = maker.plan();
+  const std::size_t plain = search.good, fewer = plan.prefix_for(static_cast<std::size_t>(
+                                             kCoarserStart * static_cast<double>(plan.triangles_after(plain))));
+  for (const std::size_t start : {std::max(plain, fewer), plain}) {
+    Result<Cut> cut = maker.shaped(start, task.part(0.5), limit);
+    if (!cut) return fail(cut.error());
+    if (cut->level.error.measured_error <= limit) {
+      cut->prefix = std::max(start, plan.prefix_for(cut->level.triangles));
+      search.good = cut->prefix;
+      return search.take(std::move(cut));
+    }
+    search.simplify_seconds += cut->simplify_seconds;
+    search.measure_seconds += cut->measure_seconds;
+  }
+  return {};
+}
+
 // The coarsest prefix found whose measured maximum is within `limit`, not finer than the last level: plain levels
-// first, within one per cent; then shaped ones from there on, within three, as each takes longer. Nothing within the
-// limit: the plain cut where the last level was.
+// first, within one per cent; then one shaped from there on. Nothing within the limit: the plain cut where the last
+// level was.
 Result<Cut> find_error_cut(LevelMaker& maker, Starts& starts, double limit, const Task& task) {
-  constexpr double kNear = 0.01, kNearShaped = 0.03, kStep = 0.6;
+  constexpr double kNear = 0.01;
   const CollapsePlan& plan = maker.plan();
   const bool shapes = maker.effort() != Effort::fast;
   const Task probes = task.part(shapes ? 0.3 : 0.9, "searching");
@@ -225,19 +251,8 @@ Result<Cut> find_error_cut(LevelMaker& maker, Starts& starts, double limit, cons
     search.best.reset();
   }
   if (shapes && search.good < plan.size()) {
-    const Task shaping = task.part(0.7, "searching");
-    search.bad = plan.size() + 1;
-    search.nearness = kNearShaped;
-    const auto make = [&](std::size_t probe) { return maker.shaped(probe, shaping.part(0.15), limit); };
-    // Steps by the same factor until one fails, then between the last two.
-    for (std::size_t probe = search.good; probe < plan.size() && search.bad > plan.size();) {
-      const double next = kStep * static_cast<double>(plan.triangles_after(probe));
-      probe = std::min(plan.size(), std::max(probe + 1, plan.prefix_for(static_cast<std::size_t>(next))));
-      if (const Result<void> ok = search.probe(limit, probe, make); !ok) return fail(ok.error());
-    }
-    if (const std::size_t next = search.next(plan); next > 0) {
-      if (const Result<void> ok = search.run(plan, limit, next, make); !ok) return fail(ok.error());
-    }
+    const Task shaping = task.part(0.7, "shaping");
+    if (const Result<void> ok = shape_fewest(maker, search, limit, shaping); !ok) return fail(ok.error());
   }
   if (!search.best || search.best->prefix != search.good) {
     if (const Result<void> ok = search.take(maker.plain(search.good, task)); !ok) return fail(ok.error());

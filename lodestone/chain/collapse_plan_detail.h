@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,14 +15,18 @@
 #include "lodestone/chain/influence.h"
 #include "lodestone/core/collapse_log.h"
 #include "lodestone/core/model.h"
+#include "lodestone/measure/distance.h"
 #include "lodestone/simplify/edge_collapse.h"
 #include "lodestone/simplify/fit_target.h"
 #include "lodestone/simplify/thin_parts.h"
 
 namespace lodestone::chain::detail {
 
-/// One a mesh, made when it is needed.
-using FitTargets = std::vector<std::unique_ptr<simplify::FitTarget>>;
+/// What levels are shaped to, one a mesh, made when it is needed.
+struct FitTargets {
+  std::vector<std::unique_ptr<simplify::FitTarget>> targets;
+  std::vector<std::optional<measure::Reference>> references;  ///< of those that are shaped to a goal
+};
 
 class CollapsePlan {
  public:
@@ -44,7 +49,8 @@ class CollapsePlan {
   /// As model_after(), with every mesh that allows it shaped by its own measured error (shape_level()): those that are
   /// drawn without being stretched, and of which no part vanishes and no triangle must stay. `targets` keeps what was
   /// prepared for the next call; of this plan, empty at first.
-  /// `goal`: a maximum error that is enough, world space; 0 = as small as it gets.
+  /// `goal`: an error that is to hold, world space, with as few triangles as possible; 0 = as small as it gets with
+  /// those of the prefix.
   Result<Model> shaped_after(std::size_t count, Effort effort, double goal, FitTargets& targets, Task task) const;
 
   /// Whether any mesh allows it. O(triangles).

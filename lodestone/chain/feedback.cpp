@@ -1,16 +1,17 @@
 // Method   measured error -> importance weights -> collapse again, the best round kept; then vertices fitted
 // Source   docs/papers/measured-feedback.md
 #include <algorithm>
-#include <array>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/units.h"
+#include "lodestone/chain/equalize_detail.h"
 #include "lodestone/chain/feedback_detail.h"
 #include "lodestone/core/adjacency.h"
+#include "lodestone/core/model.h"
 #include "lodestone/simplify/fit.h"
-#include "lodestone/simplify/split_worst.h"
 #include "lodestone/spatial/closest_batch.h"
 
 namespace lodestone::chain::detail {
@@ -30,14 +31,15 @@ constexpr int kWeightedRounds = 2;
 // Equalizing rounds: how many at most, and how many without a smaller maximum end them.
 constexpr int kRounds = 14;
 constexpr int kIdleRounds = 4;
-constexpr double kSplit = 0.75;        // of the maximum: triangles above it are split
-constexpr double kSplitShare = 0.004;  // of all triangles that may be added a round
-constexpr double kRoundsMeanForGoal = 1.15;
-constexpr double kGoal = 0.88;        // of the goal: what is found here is no certified bound
-constexpr double kRoundsMean = 1.03;  // how far the mean may rise over the fitted one's
-constexpr double kHold = 1e4;         // weight of vertices where the level is worst, so that they stay
-constexpr int kSolves = 6, kLocalSolves = 3;
-constexpr int kRings = 2;  // around what is new: vertices that are fitted again
+// Fewer triangles within a goal: so many at first, until a smaller step fails, too.
+constexpr double kShrink = 0.9, kLeastShrink = 0.98;
+constexpr int kRetries = 4;        // with places kept where collapses led beyond the goal,
+constexpr int kRoundsForGoal = 8;  // and of equalizing what is left
+constexpr double kCertify = 0.99;  // of the goal, as bounds are a hundredth above what they bound
+constexpr std::uint64_t kCertifySamples = 1000, kCertifyQueries = 1'000'000;
+constexpr double kVolumeMax = 1.02, kVolumeMean = 1.005;  // how far errors may rise to meet the volume
+constexpr double kRoundsMean = 1.03;                      // how far the mean may rise over the fitted one's
+constexpr int kSolves = 6;
 
 // Raises the weights of the start's vertices whose closest triangle of the level is among the worst.
 void raise_weights(const Mesh& start, const FittedLevel& level, std::vector<float>& weights, const Task& task) {
@@ -60,74 +62,13 @@ void raise_weights(const Mesh& start, const FittedLevel& level, std::vector<floa
   });
 }
 
-// Non-zero for vertices at one of these places (sorted).
-std::vector<std::uint8_t> at_places(const Mesh& mesh, const std::vector<Vec3f>& places) {
-  std::vector<std::uint8_t> found(mesh.vertex_count(), 0);
-  for (std::size_t v = 0; v < found.size(); ++v) {
-    found[v] = std::binary_search(places.begin(), places.end(), mesh.positions[v], before) ? 1 : 0;
-  }
-  return found;
-}
-
-// Vertices farther than `rings` edges from those that are new to a mesh.
-std::vector<std::uint8_t> far_from_new(const Mesh& mesh, const Mesh& old, int rings) {
-  std::vector<Vec3f> known = old.positions;
-  std::sort(known.begin(), known.end(), before);
-  std::vector<std::uint8_t> far = at_places(mesh, known);
-  for (int ring = 0; ring < rings; ++ring) {
-    const std::vector<std::uint8_t> last = far;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      const Triangle v = mesh.vertices_of(t);
-      if (last[v[0]] != 0 && last[v[1]] != 0 && last[v[2]] != 0) continue;
-      for (const std::uint32_t x : v) far[x] = 0;
-    }
-  }
-  return far;
-}
-
-// One round: triangles where the level is worst, in place of those that are missed least.
-Result<FittedLevel> equalized(const ShapeSource& source, const FittedLevel& level, std::size_t most_triangles,
-                              const Task& task) {
-  const std::size_t triangles = level.mesh().triangles.size();
-  const auto most = static_cast<std::size_t>(kSplitShare * static_cast<double>(triangles));
-  simplify::SplitResult split =
-      simplify::split_worst(level, kSplit, std::max<std::size_t>(2, most), source.options.keep_border,
-                            at_places(level.mesh(), source.locked_places), task);
-  std::sort(split.pulled.begin(), split.pulled.end(), before);
-  EdgeCollapseOptions options = source.options;
-  options.target_triangles = most_triangles;
-  options.record_log = false;
-  options.locked = at_places(split.mesh, source.locked_places);
-  options.weights.assign(split.mesh.vertex_count(), 1.0F);
-  const std::vector<FittedLevel::Worst> worst = level.worst();
-  for (std::size_t t = 0; t < split.mesh.triangles.size(); ++t) {
-    const double share = t < triangles ? worst[t].distance / level.max() : 1;
-    const auto weight = static_cast<float>(1 + kHold * share * share * share * share);
-    for (const std::uint32_t v : split.mesh.vertices_of(t)) options.weights[v] = std::max(options.weights[v], weight);
-  }
-  Result<simplify::EdgeCollapseResult> made = simplify::collapse_edges(split.mesh, options, task);
-  if (!made) return fail(made.error());
-  FittedLevel next(source.target, std::move(made->mesh), task, &level);
-  simplify::FitOptions fit;
-  fit.solves = kLocalSolves;
-  fit.locked = far_from_new(next.mesh(), level.mesh(), kRings);
-  const std::vector<std::uint8_t> kept = at_places(next.mesh(), source.locked_places);
-  const std::vector<std::uint8_t> pulled = at_places(next.mesh(), split.pulled);
-  for (std::size_t v = 0; v < fit.locked.size(); ++v) {
-    if (kept[v] != 0 || pulled[v] != 0) fit.locked[v] = 1;  // fitting would let those out again that were pulled in
-  }
-  next.fit(fit, task);
-  return next;
-}
-
 // The start collapsed again, vertices where the level is worst weighing more; the smallest maximum.
-Result<FittedLevel> weighted(const ShapeSource& source, Mesh plain, const Task& task) {
+Result<FittedLevel> weighted(const ShapeSource& source, FittedLevel best, const Task& task) {
   EdgeCollapseOptions options = source.options;
-  options.target_triangles = plain.triangles.size();
+  options.target_triangles = best.mesh().triangles.size();
   options.record_log = false;
   options.weights.resize(source.start.vertex_count(), 1.0F);
   options.locked = at_places(source.start, source.locked_places);
-  FittedLevel best(source.target, std::move(plain), task);
   FittedLevel current = best;
   const double start_mean = best.mean();
   for (int round = 0; round < kWeightedRounds && !task.cancelled(); ++round) {
@@ -146,33 +87,35 @@ bool has_borders(const Mesh& mesh, const Task& task) {
   return std::any_of(edges.edges.begin(), edges.edges.end(), [](const Edge& e) { return e.count != 2; });
 }
 
-Result<FittedLevel> fitted(const ShapeSource& source, Mesh plain, const Task& task) {
-  const std::size_t triangles = plain.triangles.size();
-  simplify::FitOptions fit;
-  fit.solves = kSolves;
-  // Fitting holds borders and what is not manifold; where these are worst, only collapsing otherwise helps.
-  FittedLevel best(source.target, std::move(plain), task);
-  const double plain_mean = best.mean();
-  if (has_borders(best.mesh(), task)) {
-    Result<FittedLevel> start = weighted(source, best.mesh(), task);
-    if (!start) return start;
-    best = std::move(*start);
+// Adds the places of those vertices of a level that are closest to triangles of a coarser one that are beyond the goal.
+void keep_where_bad(const FittedLevel& level, const FittedLevel& coarser, double limit, std::vector<Vec3f>& keep,
+                    const Task& task) {
+  const std::vector<FittedLevel::Worst> worst = coarser.worst();
+  const spatial::Surface surface = simplify::surface_of(coarser.mesh(), task);
+  const spatial::Bvh tree(surface, task);
+  std::vector<Vec3d> points;
+  for (std::size_t v = 0; v < level.mesh().vertex_count(); ++v) {
+    points.push_back(level.mesh().position(static_cast<std::uint32_t>(v)));
   }
-  if (!source.locked_places.empty()) fit.locked = at_places(best.mesh(), source.locked_places);
-  best.fit(fit, task);
-  task.advance(0.4);
-  // Triangles are not shifted away from where the user wants them.
-  if (!source.options.weights.empty()) return best;
-  // A maximum that is asked for is worth more rounds, and some of the mean; less of it is worth nothing.
-  const bool asked = source.goal > 0;
-  const double most_mean = asked ? kRoundsMeanForGoal * best.mean() : std::min(kRoundsMean * best.mean(), plain_mean);
-  const int most_rounds = asked ? 2 * kRounds : kRounds, most_idle = asked ? 2 * kIdleRounds : kIdleRounds;
+  std::vector<spatial::Nearest> closest(points.size());
+  spatial::ClosestBatch(tree).find(points, closest);
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    if (worst[surface.drawn[closest[v].triangle]].distance > limit) keep.push_back(level.mesh().positions[v]);
+  }
+  std::sort(keep.begin(), keep.end(), before);
+  keep.erase(std::unique(keep.begin(), keep.end()), keep.end());
+}
+
+// Rounds of equalizing, the smallest maximum; the mean stays below `most_mean`.
+Result<FittedLevel> equalized(const ShapeSource& source, FittedLevel best, double most_mean, const Task& task) {
+  const std::size_t triangles = best.mesh().triangles.size();
+  EqualizeOptions options;
+  options.most_triangles = triangles;
   FittedLevel current = best;
-  for (int round = 0, idle = 0; round < most_rounds && idle < most_idle && !task.cancelled(); ++round) {
-    if (best.max() < kGoal * source.goal) break;
+  for (int round = 0, idle = 0; round < kRounds && idle < kIdleRounds && !task.cancelled(); ++round) {
     const Task part =
-        task.part(0.6 / most_rounds, fmt::format("round {}, maximum {}", round + 1, short_number(best.max())));
-    Result<FittedLevel> next = equalized(source, current, triangles, part);
+        task.part(1.0 / kRounds, fmt::format("round {}, maximum {}", round + 1, short_number(best.max())));
+    Result<FittedLevel> next = equalize(source, current, options, part);
     if (!next) return fail(next.error());
     if (next->mesh().triangles.empty() || next->mean() > most_mean || next->mesh().triangles.size() > triangles) break;
     current = std::move(*next);
@@ -184,12 +127,125 @@ Result<FittedLevel> fitted(const ShapeSource& source, Mesh plain, const Task& ta
   return best;
 }
 
+// Whether a level is certified to be within the goal; places where it is not are told to it.
+Result<bool> holds_goal(const ShapeSource& source, FittedLevel& level, const Task& task) {
+  measure::DistanceOptions options;
+  options.samples = kCertifySamples;
+  options.queries = kCertifyQueries;
+  const Result<measure::Distance> d = source.reference->distance_to(make_model(Mesh(level.mesh())), options, task);
+  if (!d) return fail(d.error());
+  const double most = kCertify * source.goal;
+  if (d->bound <= most) return true;
+  if (d->forward.bound > most) level.look_at(d->forward.max_at, true, task);
+  if (d->backward.bound > most) level.look_at(d->backward.max_at, false, task);
+  return false;
+}
+
+// A level of at most so many triangles that is certified to be within the goal; nothing where none was found. Collapses
+// that lead beyond it are not tried again: `keep` of the options grows. What is left then is split and collapsed
+// elsewhere.
+Result<std::optional<FittedLevel>> within_goal(const ShapeSource& source, const FittedLevel& start,
+                                               EqualizeOptions& options, const Task& task) {
+  const double most = kCertify * source.goal;
+  bool found = false;
+  Result<FittedLevel> level = equalize(source, start, options, task);
+  const auto look = [&]() -> Result<void> {
+    if (!level) return fail(level.error());
+    found = !level->mesh().triangles.empty() && level->mesh().triangles.size() <= options.most_triangles;
+    found = found && level->max() <= most;
+    if (!found) return {};
+    const Result<bool> holds = holds_goal(source, *level, task);
+    if (!holds) return fail(holds.error());
+    found = *holds;
+    return {};
+  };
+  Result<void> looked = look();
+  for (int retry = 0; looked && !found && retry < kRetries && !task.cancelled(); ++retry) {
+    const std::size_t known = options.keep.size();
+    keep_where_bad(start, *level, most, options.keep, task);
+    if (options.keep.size() == known) break;
+    level = equalize(source, start, options, task);
+    looked = look();
+  }
+  for (int round = 0; looked && !found && options.fits && round < kRoundsForGoal && !task.cancelled(); ++round) {
+    level = equalize(source, *level, options, task);
+    looked = look();
+  }
+  if (!looked) return fail(looked.error());
+  if (!found) return std::nullopt;
+  return std::make_optional(std::move(*level));
+}
+
+// Fewer and fewer triangles within the goal; the level itself where it can't be brought there.
+Result<FittedLevel> fewest_within_goal(const ShapeSource& source, FittedLevel level, bool fits, const Task& task) {
+  EqualizeOptions options;
+  options.fits = fits;
+  double shrink = 0;
+  while (shrink < kLeastShrink && !task.cancelled()) {
+    const std::size_t now = level.mesh().triangles.size();
+    const double share = shrink > 0 ? shrink : 1;
+    const Task part = task.part(0.05, fmt::format("{} triangles", with_separators(now)));
+    options.most_triangles = static_cast<std::size_t>(share * static_cast<double>(now));
+    Result<std::optional<FittedLevel>> next = within_goal(source, level, options, part);
+    if (!next) return fail(next.error());
+    if (*next) {
+      level = std::move(**next);
+      if (shrink == 0) shrink = kShrink;
+    } else {
+      if (shrink == 0) break;  // not even as it is
+      shrink = (1 + shrink) / 2;
+    }
+  }
+  return level;
+}
+
+// The volume is met again, if that costs next to nothing.
+void meet_volume(FittedLevel& level, const std::vector<std::uint8_t>& locked, const Task& task) {
+  FittedLevel met = level;
+  simplify::FitOptions fit;
+  fit.solves = 0;
+  fit.volume = true;
+  fit.locked = locked;
+  met.fit(fit, task);
+  if (met.max() <= kVolumeMax * level.max() && met.mean() <= kVolumeMean * level.mean()) level = std::move(met);
+}
+
+Result<FittedLevel> shaped_best(const ShapeSource& source, FittedLevel level, const Task& task) {
+  const double plain_mean = level.mean();
+  // Fitting holds borders and what is not manifold; where these are worst, only collapsing otherwise helps.
+  if (has_borders(level.mesh(), task)) {
+    Result<FittedLevel> start = weighted(source, std::move(level), task);
+    if (!start) return start;
+    level = std::move(*start);
+  }
+  simplify::FitOptions fit;
+  fit.solves = kSolves;
+  if (!source.locked_places.empty()) fit.locked = at_places(level.mesh(), source.locked_places);
+  level.fit(fit, task);
+  task.advance(0.4);
+  if (task.cancelled() || source.goal > 0) return level;
+  // With weights, triangles are not shifted away from where they are wanted.
+  if (source.options.weights.empty()) {
+    const double most_mean = std::min(kRoundsMean * level.mean(), plain_mean);
+    Result<FittedLevel> evened = equalized(source, std::move(level), most_mean, task.part(0.6));
+    if (!evened) return evened;
+    level = std::move(*evened);
+  }
+  if (!source.locked_places.empty()) fit.locked = at_places(level.mesh(), source.locked_places);
+  meet_volume(level, fit.locked, task);
+  return level;
+}
+
 }  // namespace
 
 Result<Mesh> shape_level(const ShapeSource& source, Mesh plain, Effort effort, const Task& task) {
   if (effort == Effort::fast || plain.triangles.empty()) return plain;
+  FittedLevel level(source.target, std::move(plain), task);
   Result<FittedLevel> shaped =
-      effort == Effort::normal ? weighted(source, std::move(plain), task) : fitted(source, std::move(plain), task);
+      effort == Effort::best ? shaped_best(source, std::move(level), task) : weighted(source, std::move(level), task);
+  if (shaped && source.goal > 0 && source.options.weights.empty() && !task.cancelled()) {
+    shaped = fewest_within_goal(source, std::move(*shaped), effort == Effort::best, task);
+  }
   if (task.cancelled()) return cancelled_error("shaping");
   if (!shaped) return fail(shaped.error());
   return shaped->mesh();

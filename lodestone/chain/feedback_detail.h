@@ -8,6 +8,7 @@
 #include "lodestone/base/task.h"
 #include "lodestone/chain/effort.h"
 #include "lodestone/core/mesh.h"
+#include "lodestone/measure/distance.h"
 #include "lodestone/simplify/edge_collapse.h"
 #include "lodestone/simplify/fit_target.h"
 
@@ -21,8 +22,10 @@ struct ShapeSource {
   const Mesh& start;                             ///< what is collapsed: the original, or a finer level of it
   const simplify::FitTarget& target;             ///< the original
   const simplify::EdgeCollapseOptions& options;  ///< of the plain run, as they are for `start`; its target is not used
-  double goal = 0;                               ///< a maximum that is enough, mesh units; 0 = as small as it gets
-  std::vector<Vec3f> locked_places;              ///< of vertices that stay, sorted as before() does
+  /// A maximum that is enough, mesh units, for as few triangles as it takes; 0 = as small as it gets.
+  double goal = 0;
+  const measure::Reference* reference = nullptr;  ///< the original, mesh units; needed with a goal
+  std::vector<Vec3f> locked_places;               ///< of vertices that stay, sorted as before() does
 };
 
 /// A mesh of at most as many triangles as `level`, which the plain run made, and nearer to the original as a rule:

@@ -68,9 +68,15 @@ Result<Mesh> CollapsePlan::shaped(std::size_t m, Mesh plain, Effort effort, doub
   const CollapseLog& log = logs_[m];
   const std::size_t triangles = plain.triangles.size();
   if (triangles == 0 || triangles >= log.start_triangles || triangles > kMostTriangles) return plain;
-  targets.resize(logs_.size());
-  if (targets[m] == nullptr) {
-    targets[m] = std::make_unique<simplify::FitTarget>(mesh(m), task, effort == Effort::best);
+  targets.targets.resize(logs_.size());
+  targets.references.resize(logs_.size());
+  std::unique_ptr<simplify::FitTarget>& target = targets.targets[m];
+  if (target == nullptr) target = std::make_unique<simplify::FitTarget>(mesh(m), task, effort == Effort::best);
+  std::optional<measure::Reference>& reference = targets.references[m];
+  if (goal > 0 && !reference) {
+    Result<measure::Reference> made = measure::Reference::create(make_model(mesh(m)), task);
+    if (!made) return fail(made.error());
+    reference = std::move(*made);
   }
   const simplify::EdgeCollapseOptions& options = options_[m];
   Mesh finer;
@@ -81,8 +87,9 @@ Result<Mesh> CollapsePlan::shaped(std::size_t m, Mesh plain, Effort effort, doub
     finer = std::move(replayed->mesh);
   }
   const double scale = length(placings_[m].direction({1, 0, 0}));
-  const ShapeSource source{finer.triangles.empty() ? mesh(m) : finer, *targets[m], options, goal / scale,
-                           places_of(mesh(m), options.locked)};
+  const ShapeSource source{
+      finer.triangles.empty() ? mesh(m) : finer, *target, options, goal / scale, reference ? &*reference : nullptr,
+      places_of(mesh(m), options.locked)};
   Result<Mesh> made = shape_level(source, std::move(plain), effort, task);
   if (made) finish(*made);
   return made;

@@ -9,6 +9,7 @@
 #include "lodestone/simplify/fit_flip_detail.h"
 #include "lodestone/simplify/fit_solve_detail.h"
 #include "lodestone/simplify/fit_ties_detail.h"
+#include "lodestone/simplify/fit_volume_detail.h"
 #include "lodestone/spatial/closest_batch.h"
 
 namespace lodestone::simplify {
@@ -62,23 +63,28 @@ detail::FixedSides fixed_sides(const Mesh& mesh, const Task& task) {
   return fixed;
 }
 
-// Where each face should look: as the original does at the point closest to its middle, or, where that looks away from
-// it (the other side of something thin), as it looks now. Of length 1.
-std::vector<Vec3d> facing_of(const FitTarget& target, const spatial::Surface& level, const Task& task) {
+// Where each face that can move should look: as the original does at the point closest to its middle, or, where that
+// looks away from it (the other side of something thin), as it looks now. Of length 1.
+std::vector<Vec3d> facing_of(const FitTarget& target, const spatial::Surface& level,
+                             const std::vector<std::uint8_t>& held, const Task& task) {
   std::vector<Vec3d> facing(level.triangles.size());
   parallel_for(facing.size(), 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<std::size_t> moving;
     std::vector<Vec3d> middles;
     for (std::size_t t = begin; t < end; ++t) {
+      const Triangle& v = level.triangles[t];
+      if (held[v[0]] != 0 && held[v[1]] != 0 && held[v[2]] != 0) continue;
       const auto [a, b, c] = level.corners(t);
+      moving.push_back(t);
       middles.push_back((a + b + c) / 3.0);
     }
     std::vector<spatial::Nearest> closest(middles.size());
     spatial::ClosestBatch(target.tree()).find(middles, closest);
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto [a, b, c] = level.corners(t);
-      const auto [x, y, z] = target.surface().corners(closest[t - begin].triangle);
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+      const auto [a, b, c] = level.corners(moving[i]);
+      const auto [x, y, z] = target.surface().corners(closest[i].triangle);
       const Vec3d own = normalized(scaled_normal(a, b, c)), theirs = normalized(scaled_normal(x, y, z));
-      facing[t] = dot(own, theirs) > 0 ? theirs : own;
+      facing[moving[i]] = dot(own, theirs) > 0 ? theirs : own;
     }
   });
   return facing;
@@ -102,7 +108,7 @@ struct FittedLevel::State {
       : target(to), mesh(std::move(level)) {
     known.level = surface_of(mesh, task);
     known.ties = detail::make_ties(target, known.level, task, before);
-    detail::look_at_worst(target, known.level, suspect_share(target), known.ties, task);
+    if (before == nullptr) detail::look_at_worst(target, known.level, suspect_share(target), known.ties, task);
     mesh_vertex = mesh_vertices(mesh, known.level);
   }
 };
@@ -135,6 +141,21 @@ std::vector<FittedLevel::Worst> FittedLevel::worst() const {
   return out;
 }
 
+void FittedLevel::look_at(Vec3d place, bool on_original, const Task& task) {
+  detail::Known& known = state_->known;
+  if (known.level.triangles.empty() || state_->target.surface().triangles.empty()) return;
+  const spatial::Nearest on_level = spatial::Bvh(known.level, task).closest(place);
+  const Vec3d partner = on_original ? place : state_->target.tree().closest(place).point;
+  const auto [a, b, c] = known.level.corners(on_level.triangle);
+  const std::array<double, 3> w = barycentric(on_level.point, a, b, c);
+  const auto distance = static_cast<float>(length(partner - on_level.point));
+  const detail::Worst found{distance, static_cast<float>(w[1]), static_cast<float>(w[2]), partner};
+  for (detail::Worst* worst : {&known.ties.close[on_level.triangle], &known.ties.worst[on_level.triangle]}) {
+    if (found.distance > worst->distance) *worst = found;
+  }
+  known.ties.max = std::max(known.ties.max, static_cast<double>(distance));
+}
+
 void FittedLevel::fit(const FitOptions& options, const Task& task) {
   Mesh& mesh = state_->mesh;
   detail::Known& known = state_->known;
@@ -157,7 +178,7 @@ void FittedLevel::fit(const FitOptions& options, const Task& task) {
   for (const std::uint32_t t : known.level.drawn) wedges.push_back(mesh.triangles[t]);
   const bool flips = options.flips && !has_look(mesh);
   const double damping = has_look(mesh) ? kDampingWithLook : kDamping;
-  std::vector<Vec3d> facing = facing_of(target, known.level, task);
+  std::vector<Vec3d> facing = facing_of(target, known.level, held, task);
   for (int solve = 0; solve < options.solves && !task.cancelled(); ++solve) {
     detail::Known before = known;
     const std::vector<Triangle> wedges_before = wedges;
@@ -174,6 +195,13 @@ void FittedLevel::fit(const FitOptions& options, const Task& task) {
       known = std::move(before);
       wedges = wedges_before;
       break;
+    }
+  }
+  if (options.volume && !task.cancelled()) {
+    std::vector<Vec3d> moves = detail::volume_moves(target.surface(), known.level, held);
+    if (!moves.empty()) {
+      detail::take_moves(known.level, detail::corners_at(known.level), std::move(moves), facing, mesh.offset, task);
+      known.ties = detail::make_ties(target, known.level, task);
     }
   }
   detail::look_at_worst(target, known.level, suspect_share(target), known.ties, task);

@@ -14,6 +14,7 @@ namespace lodestone::simplify {
 struct FitOptions {
   int solves = 6;                    ///< how often vertices are moved and all partners found again
   bool flips = true;                 ///< turn edges over, too; not where textures or colours would change their course
+  bool volume = false;               ///< in the end all vertices go in or out until the original's volume is met
   std::vector<std::uint8_t> locked;  ///< one a vertex of the level, non-zero = stays; empty = none
 };
 
@@ -43,9 +44,14 @@ class FittedLevel {
   double max() const;
   std::vector<Worst> worst() const;  ///< one a triangle of the mesh
 
+  /// Looks at a place on the original, or on the level: worst() and max() rise where it is farther than was known. What
+  /// is found stays while its triangle does. O(triangles).
+  void look_at(Vec3d place, bool on_original, const Task& task);
+
   /// Moves vertices; borders, seams, borders of materials, and what is not manifold stay. Source: Hoppe et al., "Mesh
   /// optimization", SIGGRAPH 1993, with distances both ways. Stops early where nothing is gained, so the mean square is
-  /// never above the start's. O(solves * n log n); where much is locked, only what moves is measured again.
+  /// never above the start's; but where the volume is to be met, which costs a little. O(solves * n log n); where much
+  /// is locked, only what moves is measured again.
   void fit(const FitOptions& options, const Task& task);
 
  private:

@@ -266,18 +266,17 @@ void keep_points(const spatial::Surface& level, const spatial::Bvh& tree, const 
   const NearMask mask(fresh, known.ties.max);
   parallel_for(new_of.size(), kChunk / 8, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<spatial::Nearest> near;
-    std::uint32_t hint = kNone;
+    std::vector<std::uint32_t> lost;  // ties whose triangle is there no more
     for (std::size_t old = begin; old < end; ++old) {
       // Ties of the original's points before this triangle: all ties less the level's.
       const std::uint32_t first = known.ties.first[old], last = known.ties.first[old + 1] - std::uint32_t{kEach};
       for (std::uint32_t i = first; i < last; ++i) {
-        Tie& tie = ties[i - old * kEach];
+        const auto at = static_cast<std::uint32_t>(i - old * kEach);
+        Tie& tie = ties[at];
         tie = known.ties.list[i];
         const Vec3d p = tie.partner;
         if (new_of[old] == kNone) {
-          const spatial::Nearest found = tree.closest(p, hint);
-          hint = found.triangle;
-          tie = tie_at(level, found.triangle, found.point, tie.weight, p);
+          lost.push_back(at);
           continue;
         }
         tie.triangle = new_of[old];
@@ -293,6 +292,14 @@ void keep_points(const spatial::Surface& level, const spatial::Bvh& tree, const 
         }
       }
     }
+    std::vector<Vec3d> points;
+    for (const std::uint32_t at : lost) points.push_back(ties[at].partner);
+    std::vector<spatial::Nearest> closest(points.size());
+    spatial::ClosestBatch(tree).find(points, closest);
+    for (std::size_t i = 0; i < lost.size(); ++i) {
+      Tie& tie = ties[lost[i]];
+      tie = tie_at(level, closest[i].triangle, closest[i].point, tie.weight, points[i]);
+    }
   });
 }
 
@@ -302,7 +309,8 @@ void keep_level(const FitTarget& target, const spatial::Surface& level, const st
   const double area = area_of(level);
   constexpr std::size_t kEach = std::size(kInner);
   parallel_for(level.triangles.size(), kChunk / 8, task, [&](std::size_t begin, std::size_t end, std::size_t) {
-    std::uint32_t hint = kNone;
+    std::vector<std::size_t> wanted;
+    std::vector<Vec3d> points;
     for (std::size_t t = begin; t < end; ++t) {
       const std::array<Vec3d, 3> corners = level.corners(t);
       for (std::size_t k = 0; k < kEach; ++k) {
@@ -312,11 +320,13 @@ void keep_level(const FitTarget& target, const spatial::Surface& level, const st
           tie.partner = known.ties.list[known.ties.first[old_of[t] + 1] - kEach + k].partner;
           continue;
         }
-        const spatial::Nearest near = target.tree().closest(tie.on(corners), hint);
-        hint = near.triangle;
-        tie.partner = near.point;
+        wanted.push_back(t * kEach + k);
+        points.push_back(tie.on(corners));
       }
     }
+    std::vector<spatial::Nearest> closest(points.size());
+    spatial::ClosestBatch(target.tree()).find(points, closest);
+    for (std::size_t i = 0; i < wanted.size(); ++i) ties[wanted[i]].partner = closest[i].point;
   });
 }
 
@@ -403,24 +413,27 @@ void retie(const FitTarget& target, const spatial::Surface& level, const std::ve
 }
 
 void look_at_worst(const FitTarget& target, const spatial::Surface& level, double share, Ties& ties, const Task& task) {
-  constexpr int kSteps = 10;  // a lattice of points on the triangle, corners left out
+  // Lattices of points: a wide one first, a narrow one where that finds something near to the maximum.
+  constexpr int kWide = 4, kNarrow = 10;
+  constexpr double kPromising = 0.7;
   std::vector<std::uint32_t> suspects;
   for (std::uint32_t t = 0; t < level.triangles.size(); ++t) {
     const bool looked = ties.close[t].distance > 0;
     if (!looked && static_cast<double>(ties.worst[t].distance) > share * ties.max) suspects.push_back(t);
   }
+  const double promising = kPromising * ties.max;
   parallel_for(suspects.size(), 16, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<Vec3d> points;
+    std::vector<std::array<float, 2>> shares;
     std::vector<spatial::Nearest> closest;
     spatial::ClosestBatch batch(target.tree());
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t t = suspects[k];
+    const auto look = [&](std::uint32_t t, int steps) {
       const auto [a, b, c] = level.corners(t);
       points.clear();
-      std::vector<std::array<float, 2>> shares;
-      for (int i = 0; i <= kSteps; ++i) {
-        for (int j = 0; i + j <= kSteps; ++j) {
-          const double second = static_cast<double>(i) / kSteps, third = static_cast<double>(j) / kSteps;
+      shares.clear();
+      for (int i = 0; i <= steps; ++i) {
+        for (int j = 0; i + j <= steps; ++j) {
+          const double second = static_cast<double>(i) / steps, third = static_cast<double>(j) / steps;
           points.push_back(a + (b - a) * second + (c - a) * third);
           shares.push_back({static_cast<float>(second), static_cast<float>(third)});
         }
@@ -432,6 +445,10 @@ void look_at_worst(const FitTarget& target, const spatial::Surface& level, doubl
               {static_cast<float>(std::sqrt(closest[i].distance_sq)), shares[i][0], shares[i][1], closest[i].point});
       }
       raise(ties.worst[t], ties.close[t]);
+    };
+    for (std::size_t k = begin; k < end; ++k) {
+      look(suspects[k], kWide);
+      if (static_cast<double>(ties.worst[suspects[k]].distance) > promising) look(suspects[k], kNarrow);
     }
   });
   for (const Worst& worst : ties.worst) ties.max = std::max(ties.max, static_cast<double>(worst.distance));

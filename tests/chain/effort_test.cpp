@@ -45,6 +45,8 @@ TEST(Effort, is_never_worse_and_worth_it) {
   EXPECT_LT(best.level.error.measured_error, 0.9 * fast.level.error.measured_error);
   EXPECT_LT(best.level.error.mean_error, 0.95 * fast.level.error.mean_error);
   EXPECT_EQ(best.level.method, "edge collapse, fitted by its error");
+  const double volume = volume_of(model.meshes.front());
+  EXPECT_NEAR(volume_of(best.level.model.meshes.front()), volume, 1e-4 * volume);
   for (const SimplifyModelResult* r : {&fast, &normal, &best}) {
     EXPECT_LE(r->level.triangles, 700U);
     const Topology t = topology_of(r->level.model.meshes.front());
@@ -58,8 +60,15 @@ TEST(Effort, needs_fewer_triangles_for_an_error) {
   options.max_error = 0.01;
   const SimplifyModelResult fast = simplified(model, options, Effort::fast);
   const SimplifyModelResult best = simplified(model, options, Effort::best);
+  const SimplifyModelResult normal = simplified(model, options, Effort::normal);
+  EXPECT_LE(normal.level.error.measured_error, 0.01);
+  EXPECT_LE(normal.level.triangles, fast.level.triangles);
   EXPECT_LE(best.level.error.measured_error, 0.01);
-  EXPECT_LT(best.level.triangles, 0.9 * static_cast<double>(fast.level.triangles));
+  EXPECT_LT(best.level.triangles, 0.65 * static_cast<double>(fast.level.triangles));
+  for (const SimplifyModelResult* r : {&normal, &best}) {
+    const Topology t = topology_of(r->level.model.meshes.front());
+    EXPECT_TRUE(t.closed && t.manifold);
+  }
 }
 
 TEST(Effort, has_the_same_bytes_for_any_thread_count) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lodestone/core/topology.h"
@@ -114,6 +115,37 @@ TEST(Fit, measures_again_only_what_changed) {
   EXPECT_EQ(anew.max(), updated.max());
   const auto a = anew.worst(), b = updated.worst();
   for (std::size_t t = 0; t < a.size(); ++t) EXPECT_GE(b[t].distance + 1e-9, a[t].distance) << t;
+}
+
+TEST(Fit, looks_where_it_is_told) {
+  const Mesh original = test::cube();
+  Mesh level = original;
+  for (Vec3f& p : level.positions) p.z *= 0.5F;  // the top and the bottom are a fourth farther in
+  const FitTarget target(original);
+  FittedLevel known(target, level, {});
+  const double before = known.max();
+  known.look_at(Vec3d{3, 3, 3}, true, {});
+  EXPECT_GT(known.max(), before) << "as far as it was told";
+  const std::vector<FittedLevel::Worst> worst = known.worst();
+  EXPECT_TRUE(std::any_of(worst.begin(), worst.end(), [&](const auto& w) { return w.partner == Vec3d{3, 3, 3}; }));
+  const double now = known.max();
+  known.look_at(level.position(0), false, {});
+  EXPECT_EQ(known.max(), now) << "nothing new there";
+}
+
+TEST(Fit, meets_the_volume) {
+  const Mesh original = bumpy(60);
+  const FitTarget target(original);
+  FittedLevel level(target, collapsed(original, 300), {});
+  FitOptions options;
+  options.solves = 2;
+  level.fit(options, {});
+  const double volume = volume_of(original);
+  EXPECT_GT(std::abs(volume_of(level.mesh()) - volume), 1e-5 * volume);
+  options.solves = 0;
+  options.volume = true;
+  level.fit(options, {});
+  EXPECT_NEAR(volume_of(level.mesh()), volume, 1e-5 * volume);
 }
 
 TEST(Fit, textures_do_not_swim) {
