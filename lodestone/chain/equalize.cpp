@@ -37,7 +37,7 @@ std::vector<std::uint8_t> far_from_new(const Mesh& mesh, const Mesh& old, int ri
 }
 
 // Of vertices of a level, some of whose triangles have been split: the farther from the original, the heavier.
-std::vector<float> weights_for(const FittedLevel& level, const Mesh& split, const std::vector<Vec3f>& keep) {
+std::vector<float> weights_for(const FittedLevel& level, const Mesh& split, const EqualizeOptions& options) {
   std::vector<float> weights(split.vertex_count(), 1.0F);
   const std::vector<FittedLevel::Worst> worst = level.worst();
   for (std::size_t t = 0; t < split.triangles.size(); ++t) {
@@ -45,9 +45,11 @@ std::vector<float> weights_for(const FittedLevel& level, const Mesh& split, cons
     const auto weight = static_cast<float>(1 + kHold * share * share * share * share);
     for (const std::uint32_t v : split.vertices_of(t)) weights[v] = std::max(weights[v], weight);
   }
-  const std::vector<std::uint8_t> left = at_places(split, keep);
-  for (std::size_t v = 0; v < left.size(); ++v) {
-    if (left[v] != 0) weights[v] = std::max(weights[v], kKeep);
+  for (const std::vector<Vec3f>* places : {&options.keep, &options.stay}) {
+    const std::vector<std::uint8_t> left = at_places(split, *places);
+    for (std::size_t v = 0; v < left.size(); ++v) {
+      if (left[v] != 0) weights[v] = std::max(weights[v], kKeep);
+    }
   }
   return weights;
 }
@@ -68,7 +70,8 @@ Result<FittedLevel> equalize(const ShapeSource& source, const FittedLevel& level
   if (options.fits) {
     const auto share = static_cast<std::size_t>(kSplitShare * static_cast<double>(level.mesh().triangles.size()));
     split = simplify::split_worst(level, kSplit, std::max<std::size_t>(2, share), source.options.keep_border,
-                                  at_places(level.mesh(), source.locked_places), task);
+                                  at_places(level.mesh(), source.locked_places),
+                                  at_places(level.mesh(), options.stay), task);
     std::sort(split.pulled.begin(), split.pulled.end(), before);
   } else {
     split.mesh = level.mesh();
@@ -77,7 +80,7 @@ Result<FittedLevel> equalize(const ShapeSource& source, const FittedLevel& level
   collapse.target_triangles = options.most_triangles;
   collapse.record_log = false;
   collapse.locked = at_places(split.mesh, source.locked_places);
-  collapse.weights = weights_for(level, split.mesh, options.keep);
+  collapse.weights = weights_for(level, split.mesh, options);
   Result<simplify::EdgeCollapseResult> made = simplify::collapse_edges(split.mesh, collapse, task);
   if (!made) return fail(made.error());
   FittedLevel next(source.target, std::move(made->mesh), task, &level);
@@ -86,8 +89,9 @@ Result<FittedLevel> equalize(const ShapeSource& source, const FittedLevel& level
   fit.locked = far_from_new(next.mesh(), level.mesh(), kRings);
   const std::vector<std::uint8_t> kept = at_places(next.mesh(), source.locked_places);
   const std::vector<std::uint8_t> pulled = at_places(next.mesh(), split.pulled);
+  const std::vector<std::uint8_t> stay = at_places(next.mesh(), options.stay);
   for (std::size_t v = 0; v < fit.locked.size(); ++v) {
-    if (kept[v] != 0 || pulled[v] != 0) fit.locked[v] = 1;  // fitting would let those out again that were pulled in
+    if (kept[v] != 0 || pulled[v] != 0 || stay[v] != 0) fit.locked[v] = 1;  // fitting would let those out again that were pulled in
   }
   next.fit(fit, task);
   return next;

@@ -18,7 +18,8 @@ std::vector<std::uint8_t> at_places(const Mesh& mesh, const std::vector<Vec3f>& 
 struct EqualizeOptions {
   std::size_t most_triangles = 0;
   bool fits = true;         ///< split where the level is worst and fit what is new; else collapse alone
-  std::vector<Vec3f> keep;  ///< places of vertices to leave, sorted as before() does
+  std::vector<Vec3f> keep;  ///< places of vertices not to collapse, sorted as before() does,
+  std::vector<Vec3f> stay;  ///< and of some not to move, nor to split the triangles of, either
 };
 
 /// Splits triangles where the level is worst, collapses others down to the count, those that are farthest from the

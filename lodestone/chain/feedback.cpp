@@ -40,6 +40,7 @@ constexpr std::uint64_t kCertifySamples = 1000, kCertifyQueries = 1'000'000;
 constexpr double kVolumeMax = 1.02, kVolumeMean = 1.005;  // how far errors may rise to meet the volume
 constexpr double kRoundsMean = 1.03;                      // how far the mean may rise over the fitted one's
 constexpr int kSolves = 6;
+constexpr int kFitAttempts = 3;
 
 // Raises the weights of the start's vertices whose closest triangle of the level is among the worst.
 void raise_weights(const Mesh& start, const FittedLevel& level, std::vector<float>& weights, const Task& task) {
@@ -71,13 +72,15 @@ Result<FittedLevel> weighted(const ShapeSource& source, FittedLevel best, const 
   options.locked = at_places(source.start, source.locked_places);
   FittedLevel current = best;
   const double start_mean = best.mean();
+  const FittedLevel::Faults start_faults = best.faults(task);
   for (int round = 0; round < kWeightedRounds && !task.cancelled(); ++round) {
     raise_weights(source.start, current, options.weights, task);
     Result<simplify::EdgeCollapseResult> made = simplify::collapse_edges(source.start, options, task.part(0.3));
     if (!made) return fail(made.error());
     if (made->mesh.triangles.empty() || task.cancelled()) break;
     current = FittedLevel(source.target, std::move(made->mesh), task);
-    if (current.max() < best.max() && current.mean() <= kMeanSlack * start_mean) best = current;
+    if (!(current.max() < best.max()) || current.mean() > kMeanSlack * start_mean) continue;
+    if (current.faults(task).no_more_than(start_faults)) best = current;
   }
   return best;
 }
@@ -85,6 +88,19 @@ Result<FittedLevel> weighted(const ShapeSource& source, FittedLevel best, const 
 bool has_borders(const Mesh& mesh, const Task& task) {
   const EdgeTriangles edges = edge_triangles(mesh, task);
   return std::any_of(edges.edges.begin(), edges.edges.end(), [](const Edge& e) { return e.count != 2; });
+}
+
+void sort_places(std::vector<Vec3f>& places) {
+  std::sort(places.begin(), places.end(), before);
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+}
+
+// Adds the places of marked vertices.
+void keep_where(const Mesh& mesh, const std::vector<std::uint8_t>& marked, std::vector<Vec3f>& keep) {
+  for (std::size_t v = 0; v < marked.size(); ++v) {
+    if (marked[v] != 0) keep.push_back(mesh.positions[v]);
+  }
+  sort_places(keep);
 }
 
 // Adds the places of those vertices of a level that are closest to triangles of a coarser one that are beyond the goal.
@@ -102,12 +118,12 @@ void keep_where_bad(const FittedLevel& level, const FittedLevel& coarser, double
   for (std::size_t v = 0; v < points.size(); ++v) {
     if (worst[surface.drawn[closest[v].triangle]].distance > limit) keep.push_back(level.mesh().positions[v]);
   }
-  std::sort(keep.begin(), keep.end(), before);
-  keep.erase(std::unique(keep.begin(), keep.end()), keep.end());
+  sort_places(keep);
 }
 
-// Rounds of equalizing, the smallest maximum; the mean stays below `most_mean`.
-Result<FittedLevel> equalized(const ShapeSource& source, FittedLevel best, double most_mean, const Task& task) {
+// Rounds of equalizing, the smallest maximum; the mean stays below `most_mean`, and no faults are added.
+Result<FittedLevel> equalized(const ShapeSource& source, FittedLevel best, double most_mean,
+                              const FittedLevel::Faults& most_faults, const Task& task) {
   const std::size_t triangles = best.mesh().triangles.size();
   EqualizeOptions options;
   options.most_triangles = triangles;
@@ -118,8 +134,13 @@ Result<FittedLevel> equalized(const ShapeSource& source, FittedLevel best, doubl
     Result<FittedLevel> next = equalize(source, current, options, part);
     if (!next) return fail(next.error());
     if (next->mesh().triangles.empty() || next->mean() > most_mean || next->mesh().triangles.size() > triangles) break;
-    current = std::move(*next);
     ++idle;
+    const FittedLevel::Faults faults = next->faults(task);
+    if (!faults.no_more_than(most_faults)) {
+      keep_where(next->mesh(), faults.vertices, options.stay);  // and again from where it was
+      continue;
+    }
+    current = std::move(*next);
     if (!(current.max() < best.max())) continue;
     best = current;
     idle = 0;
@@ -145,14 +166,15 @@ Result<bool> holds_goal(const ShapeSource& source, FittedLevel& level, const Tas
 // that lead beyond it are not tried again: `keep` of the options grows. What is left then is split and collapsed
 // elsewhere.
 Result<std::optional<FittedLevel>> within_goal(const ShapeSource& source, const FittedLevel& start,
-                                               EqualizeOptions& options, const Task& task) {
+                                               const FittedLevel::Faults& most_faults, EqualizeOptions& options,
+                                               const Task& task) {
   const double most = kCertify * source.goal;
   bool found = false;
   Result<FittedLevel> level = equalize(source, start, options, task);
   const auto look = [&]() -> Result<void> {
     if (!level) return fail(level.error());
     found = !level->mesh().triangles.empty() && level->mesh().triangles.size() <= options.most_triangles;
-    found = found && level->max() <= most;
+    found = found && level->max() <= most && level->faults(task).no_more_than(most_faults);
     if (!found) return {};
     const Result<bool> holds = holds_goal(source, *level, task);
     if (!holds) return fail(holds.error());
@@ -178,6 +200,7 @@ Result<std::optional<FittedLevel>> within_goal(const ShapeSource& source, const 
 
 // Fewer and fewer triangles within the goal; the level itself where it can't be brought there.
 Result<FittedLevel> fewest_within_goal(const ShapeSource& source, FittedLevel level, bool fits, const Task& task) {
+  const FittedLevel::Faults most_faults = level.faults(task);
   EqualizeOptions options;
   options.fits = fits;
   double shrink = 0;
@@ -186,7 +209,7 @@ Result<FittedLevel> fewest_within_goal(const ShapeSource& source, FittedLevel le
     const double share = shrink > 0 ? shrink : 1;
     const Task part = task.part(0.05, fmt::format("{} triangles", with_separators(now)));
     options.most_triangles = static_cast<std::size_t>(share * static_cast<double>(now));
-    Result<std::optional<FittedLevel>> next = within_goal(source, level, options, part);
+    Result<std::optional<FittedLevel>> next = within_goal(source, level, most_faults, options, part);
     if (!next) return fail(next.error());
     if (*next) {
       level = std::move(**next);
@@ -210,8 +233,27 @@ void meet_volume(FittedLevel& level, const std::vector<std::uint8_t>& locked, co
   if (met.max() <= kVolumeMax * level.max() && met.mean() <= kVolumeMean * level.mean()) level = std::move(met);
 }
 
+// Fits without adding faults: where some come up, the vertices there stay, and all is fitted again.
+void fit_without_faults(FittedLevel& level, simplify::FitOptions options, const FittedLevel::Faults& most,
+                        const Task& task) {
+  if (options.locked.empty()) options.locked.assign(level.mesh().vertex_count(), 0);
+  for (int attempt = 0; attempt < kFitAttempts && !task.cancelled(); ++attempt) {
+    FittedLevel next = level;
+    next.fit(options, task);
+    const FittedLevel::Faults faults = next.faults(task);
+    if (faults.no_more_than(most)) {
+      level = std::move(next);
+      return;
+    }
+    for (std::size_t v = 0; v < options.locked.size(); ++v) {
+      if (faults.vertices[v] != 0) options.locked[v] = 1;
+    }
+  }
+}
+
 Result<FittedLevel> shaped_best(const ShapeSource& source, FittedLevel level, const Task& task) {
   const double plain_mean = level.mean();
+  const FittedLevel::Faults plain_faults = level.faults(task);
   // Fitting holds borders and what is not manifold; where these are worst, only collapsing otherwise helps.
   if (has_borders(level.mesh(), task)) {
     Result<FittedLevel> start = weighted(source, std::move(level), task);
@@ -221,13 +263,13 @@ Result<FittedLevel> shaped_best(const ShapeSource& source, FittedLevel level, co
   simplify::FitOptions fit;
   fit.solves = kSolves;
   if (!source.locked_places.empty()) fit.locked = at_places(level.mesh(), source.locked_places);
-  level.fit(fit, task);
+  fit_without_faults(level, fit, plain_faults, task);
   task.advance(0.4);
   if (task.cancelled() || source.goal > 0) return level;
   // With weights, triangles are not shifted away from where they are wanted.
   if (source.options.weights.empty()) {
     const double most_mean = std::min(kRoundsMean * level.mean(), plain_mean);
-    Result<FittedLevel> evened = equalized(source, std::move(level), most_mean, task.part(0.6));
+    Result<FittedLevel> evened = equalized(source, std::move(level), most_mean, plain_faults, task.part(0.6));
     if (!evened) return evened;
     level = std::move(*evened);
   }

@@ -48,6 +48,18 @@ class FittedLevel {
   /// is found stays while its triangle does. O(triangles).
   void look_at(Vec3d place, bool on_original, const Task& task);
 
+  /// What is wrong with a level whatever its distance: pairs of triangles that cross, edges where two triangles lie on
+  /// each other (an angle of more than 170 degrees between their normals). O(n log n).
+  struct Faults {
+    std::size_t crossings = 0, folds = 0;
+    std::vector<std::uint8_t> vertices;  ///< of the mesh: non-zero at faulty triangles
+    bool no_more_than(const Faults& other) const { return crossings <= other.crossings && folds <= other.folds; }
+  };
+  Faults faults(const Task& task) const;
+
+  /// The triangles that are measured, in mesh space.
+  const spatial::Surface& surface() const;
+
   /// Moves vertices; borders, seams, borders of materials, and what is not manifold stay. Source: Hoppe et al., "Mesh
   /// optimization", SIGGRAPH 1993, with distances both ways. Stops early where nothing is gained, so the mean square is
   /// never above the start's; but where the volume is to be met, which costs a little. O(solves * n log n); where much

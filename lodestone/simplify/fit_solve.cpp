@@ -7,6 +7,7 @@
 #include "lodestone/base/parallel.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/simplify/fit_solve_detail.h"
+#include "lodestone/spatial/crossings.h"
 #include "lodestone/spatial/neighbors.h"
 
 namespace lodestone::simplify::detail {
@@ -185,59 +186,123 @@ std::vector<Vec3d> solve_moves(const spatial::Surface& level, const Ties& ties, 
   return moves;
 }
 
-void take_moves(spatial::Surface& level, const CornersAt& around, std::vector<Vec3d> moves,
-                std::span<const Vec3d> facing, Vec3d offset, const Task& task) {
-  constexpr int kHalvings = 5;
-  const std::vector<std::array<std::uint32_t, 3>> neighbors = spatial::triangle_neighbors(level);
-  const std::vector<Vec3d> before = level.positions;
-  const std::size_t n = level.triangles.size();
-  std::vector<Vec3d> old_normals(n), normals(n);
-  const auto normal_of = [&](std::size_t t) {
-    const auto [a, b, c] = level.corners(t);
-    return scaled_normal(a, b, c);
-  };
-  for (std::size_t t = 0; t < n; ++t) old_normals[t] = normal_of(t);
-  std::vector<std::uint8_t> bad(n);
-  for (int round = 0; !task.cancelled(); ++round) {  // ends: from the last halving on, moves only vanish
-    parallel_for(level.positions.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
-      for (std::size_t v = begin; v < end; ++v) {
-        if (moves[v] != Vec3d{})
-          level.positions[v] = to_double(to_float(before[v] + moves[v] - offset)) + offset;
-        else
-          level.positions[v] = before[v];
+namespace {
+
+// Moves vertices by what is left of their moves, which are halved until no face turns or folds.
+class Mover {
+ public:
+  Mover(spatial::Surface& level, const CornersAt& around, std::vector<Vec3d> moves, std::span<const Vec3d> facing,
+        Vec3d offset)
+      : level_(level),
+        around_(around),
+        moves_(std::move(moves)),
+        facing_(facing),
+        offset_(offset),
+        neighbors_(spatial::triangle_neighbors(level)),
+        before_(level.positions) {
+    for (std::size_t t = 0; t < level_.triangles.size(); ++t) old_normals_.push_back(normal_of(t));
+  }
+
+  void settle(const Task& task) {
+    constexpr int kHalvings = 5;
+    const std::size_t n = level_.triangles.size();
+    std::vector<Vec3d> normals(n);
+    std::vector<std::uint8_t> bad(n);
+    for (int round = 0; !task.cancelled(); ++round) {  // ends: from the last halving on, moves only vanish
+      place(task);
+      parallel_for(n, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t t = begin; t < end; ++t) normals[t] = normal_of(t);
+      });
+      parallel_for(n, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t t = begin; t < end; ++t) bad[t] = is_bad(t, normals) ? 1 : 0;
+      });
+      bool any = false;
+      for (std::size_t v = 0; v < moves_.size(); ++v) {
+        bool halve = false;
+        for (std::uint32_t i = around_.first[v]; i < around_.first[v + 1] && !halve; ++i)
+          halve = bad[around_.list[i] / 3] != 0;
+        if (!halve || moves_[v] == Vec3d{}) continue;
+        moves_[v] = round < kHalvings ? moves_[v] * 0.5 : Vec3d{};
+        any = true;
       }
-    });
-    parallel_for(n, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
-      for (std::size_t t = begin; t < end; ++t) normals[t] = normal_of(t);
-    });
-    parallel_for(n, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
-      for (std::size_t t = begin; t < end; ++t) {
-        bad[t] =
-            turns(old_normals[t], normals[t]) || (turns(facing[t], normals[t]) && !turns(facing[t], old_normals[t]))
-                ? 1
-                : 0;
-        for (const std::uint32_t other : neighbors[t]) {
-          if (bad[t] != 0 || other == kNone) continue;
-          const double lengths = length(normals[t]) * length(normals[other]);
-          const double old_lengths = length(old_normals[t]) * length(old_normals[other]);
-          bad[t] = dot(normals[t], normals[other]) < kFold * lengths &&
-                           !(dot(old_normals[t], old_normals[other]) < kFold * old_lengths)
-                       ? 1
-                       : 0;
+      if (!any) return;
+    }
+  }
+
+  // Takes moves back where triangles have come to cross. False when there was nothing to take back.
+  bool uncross(const Task& task) {
+    std::vector<std::uint8_t> moved(level_.triangles.size(), 0);
+    for (std::size_t t = 0; t < moved.size(); ++t) {
+      const Triangle& v = level_.triangles[t];
+      moved[t] = moves_[v[0]] != Vec3d{} || moves_[v[1]] != Vec3d{} || moves_[v[2]] != Vec3d{} ? 1 : 0;
+    }
+    const auto now = spatial::crossings(spatial::Bvh(level_, task), moved, task);
+    if (now.empty() || task.cancelled()) return false;
+    spatial::Surface old = level_;
+    old.positions = before_;
+    std::vector<std::uint8_t> suspect(moved.size(), 0);
+    for (const auto& [t, u] : now) suspect[t] = suspect[u] = 1;
+    const auto then = spatial::crossings(spatial::Bvh(old, task), suspect, task);
+    bool any = false;
+    for (const auto& pair : now) {
+      if (std::binary_search(then.begin(), then.end(), pair)) continue;
+      for (const std::uint32_t t : pair) {
+        for (const std::uint32_t v : level_.triangles[t]) {
+          any = any || moves_[v] != Vec3d{};
+          moves_[v] = {};
         }
       }
-    });
-    bool any = false;
-    for (std::size_t v = 0; v < moves.size(); ++v) {
-      bool halve = false;
-      for (std::uint32_t i = around.first[v]; i < around.first[v + 1] && !halve; ++i)
-        halve = bad[around.list[i] / 3] != 0;
-      if (!halve || moves[v] == Vec3d{}) continue;
-      moves[v] = round < kHalvings ? moves[v] * 0.5 : Vec3d{};
-      any = true;
     }
-    if (!any) return;
+    return any;
   }
+
+ private:
+  Vec3d normal_of(std::size_t t) const {
+    const auto [a, b, c] = level_.corners(t);
+    return scaled_normal(a, b, c);
+  }
+
+  void place(const Task& task) {
+    parallel_for(level_.positions.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t v = begin; v < end; ++v) {
+        if (moves_[v] != Vec3d{})
+          level_.positions[v] = to_double(to_float(before_[v] + moves_[v] - offset_)) + offset_;
+        else
+          level_.positions[v] = before_[v];
+      }
+    });
+  }
+
+  bool is_bad(std::size_t t, const std::vector<Vec3d>& normals) const {
+    if (turns(old_normals_[t], normals[t])) return true;
+    if (turns(facing_[t], normals[t]) && !turns(facing_[t], old_normals_[t])) return true;
+    for (const std::uint32_t other : neighbors_[t]) {
+      if (other == kNone) continue;
+      const double now = dot(normalized(normals[t]), normalized(normals[other]));
+      if (now < kFold && now < dot(normalized(old_normals_[t]), normalized(old_normals_[other]))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  spatial::Surface& level_;
+  const CornersAt& around_;
+  std::vector<Vec3d> moves_;
+  std::span<const Vec3d> facing_;
+  Vec3d offset_;
+  std::vector<std::array<std::uint32_t, 3>> neighbors_;
+  std::vector<Vec3d> before_;
+  std::vector<Vec3d> old_normals_;
+};
+
+}  // namespace
+
+void take_moves(spatial::Surface& level, const CornersAt& around, std::vector<Vec3d> moves,
+                std::span<const Vec3d> facing, Vec3d offset, const Task& task) {
+  Mover mover(level, around, std::move(moves), facing, offset);
+  mover.settle(task);
+  while (mover.uncross(task)) mover.settle(task);  // ends: each time moves have vanished
 }
 
 }  // namespace lodestone::simplify::detail

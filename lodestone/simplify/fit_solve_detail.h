@@ -23,8 +23,8 @@ std::vector<Vec3d> solve_moves(const spatial::Surface& level, const Ties& ties, 
 
 /// Takes the moves, halved where a face would turn by more than some 70 degrees or fold onto a neighbour, until none
 /// does; a vertex that does even then stays. The same where a face would turn away from where it should
-/// look (`facing`, one a triangle): small steps must not add up. Positions are rounded to floats relative
-/// to `offset`, as a mesh keeps them.
+/// look (`facing`, one a triangle): small steps must not add up. Vertices of triangles that would come to cross stay.
+/// Positions are rounded to floats relative to `offset`, as a mesh keeps them.
 void take_moves(spatial::Surface& level, const CornersAt& around, std::vector<Vec3d> moves,
                 std::span<const Vec3d> facing, Vec3d offset, const Task& task);
 

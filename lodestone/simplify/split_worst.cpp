@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "lodestone/core/adjacency.h"
 #include "lodestone/core/blend.h"
+#include "lodestone/math/box.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/simplify/fit_attributes_detail.h"
+#include "lodestone/spatial/crossings.h"
 
 namespace lodestone::simplify {
 
@@ -48,6 +51,7 @@ class Splitter {
         mesh_(level.mesh()),
         edges_(edge_triangles(mesh_, task)),
         around_(vertex_triangles(mesh_)),
+        tree_(level.surface(), task),
         touched_(mesh_.triangles.size(), 0),
         stays_(stays.begin(), stays.end()) {
     stays_.resize(mesh_.vertex_count(), 0);
@@ -64,6 +68,10 @@ class Splitter {
       if (const std::size_t added = split(t, worst, way); added > 0) return added;
     }
     return 0;
+  }
+
+  void leave_around(std::uint32_t vertex) {
+    for (const std::uint32_t t : around_.of(vertex)) touched_[t] = 1;
   }
 
   SplitResult finish() {
@@ -122,7 +130,7 @@ class Splitter {
     return dot(before, after) > kTurn * length(before) * length(after);
   }
   // Whether a triangle may be cut into those that have `place` for one of these corners each.
-  bool may_cut(std::uint32_t t, std::initializer_list<std::size_t> corners, Vec3d place) const {
+  bool may_cut(std::uint32_t t, std::initializer_list<std::size_t> corners, Vec3d place) {
     const Triangle v = mesh_.vertices_of(t);
     std::array<Vec3d, 3> p{mesh_.position(v[0]), mesh_.position(v[1]), mesh_.position(v[2])};
     const Vec3d before = scaled_normal(p[0], p[1], p[2]);
@@ -130,6 +138,9 @@ class Splitter {
       std::array<Vec3d, 3> q = p;
       q[k] = place;
       if (!looks_alike(before, scaled_normal(q[0], q[1], q[2]))) return false;
+      Triangle cut = v;
+      cut[k] = kNone;
+      if (crosses(cut, kNone, place)) return false;
     }
     return true;
   }
@@ -141,6 +152,24 @@ class Splitter {
       if (v[k] != a && v[k] != b) return (k + 1) % 3;
     }
     return 0;
+  }
+
+  // Whether a triangle with `moved` at `place` crosses one that has none of its vertices. Looks at the level as it was.
+  bool crosses(const Triangle& v, std::uint32_t moved, Vec3d place) {
+    std::array<Vec3d, 3> p;
+    Box3d box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = v[k] == moved ? place : mesh_.position(v[k]);
+      box.add(p[k]);
+    }
+    tree_.triangles_in(box, std::numeric_limits<std::size_t>::max(), near_);
+    return std::any_of(near_.begin(), near_.end(), [&](std::uint32_t n) {
+      const std::uint32_t t = tree_.surface().drawn[n];
+      if (touched_[t] != 0) return false;
+      const Triangle w = mesh_.vertices_of(t);
+      const bool joined = std::any_of(w.begin(), w.end(), [&](auto x) { return x == v[0] || x == v[1] || x == v[2]; });
+      return !joined && spatial::triangles_cross(p, tree_.surface().corners(n));
+    });
   }
 
   std::uint32_t add_vertex(Vec3d place) {
@@ -160,6 +189,7 @@ class Splitter {
     for (const std::uint32_t t : around_.of(vertex)) {
       const Triangle& w = mesh_.triangles[t];
       if (touched_[t] != 0 || !looks_alike(normal_of(w, kNone, {}), normal_of(w, vertex, place))) return 0;
+      if (crosses(mesh_.vertices_of(t), vertex, place)) return 0;
     }
     for (const std::uint32_t t : around_.of(vertex)) touched_[t] = 1;
     mesh_.positions[vertex] = to_float(place - mesh_.offset);
@@ -229,16 +259,18 @@ class Splitter {
   Mesh mesh_;
   EdgeTriangles edges_;  // of the level as it was
   VertexTriangles around_;
+  spatial::Bvh tree_;  // of the level as it was
   std::vector<std::uint8_t> touched_;
   std::vector<std::uint8_t> stays_;  // of the level's vertices
   std::vector<Vec3f> moved_;
   std::vector<Mix> mixes_;
+  std::vector<std::uint32_t> near_;
 };
 
 }  // namespace
 
 SplitResult split_worst(const FittedLevel& level, double share, std::size_t most, bool keep_borders,
-                        std::span<const std::uint8_t> stays, const Task& task) {
+                        std::span<const std::uint8_t> stays, std::span<const std::uint8_t> whole, const Task& task) {
   const std::vector<FittedLevel::Worst> worst = level.worst();
   std::vector<std::uint32_t> order;
   for (std::uint32_t t = 0; t < worst.size(); ++t) {
@@ -248,6 +280,9 @@ SplitResult split_worst(const FittedLevel& level, double share, std::size_t most
                    [&](std::uint32_t a, std::uint32_t b) { return worst[a].distance > worst[b].distance; });
   if (task.cancelled()) return {level.mesh(), {}};
   Splitter splitter(level, keep_borders, stays, task);
+  for (std::uint32_t v = 0; v < whole.size(); ++v) {
+    if (whole[v] != 0) splitter.leave_around(v);
+  }
   std::size_t added = 0;
   for (const std::uint32_t t : order) {
     if (added >= most) break;

@@ -23,8 +23,8 @@ struct SplitResult {
 /// that goes half way to the original. Attributes are those of the level at the place. O(n log n).
 /// Open borders are split and pulled, too, unless they are to be kept. No face may turn by more than some 70 degrees,
 /// and no vertex is pulled that `stays` (one a vertex, non-zero = stays; empty = none) or lies on a seam or between
-/// materials.
+/// materials. Triangles that have a vertex that is `whole` (as `stays`) are not split.
 SplitResult split_worst(const FittedLevel& level, double share, std::size_t most, bool keep_borders,
-                        std::span<const std::uint8_t> stays, const Task& task);
+                        std::span<const std::uint8_t> stays, std::span<const std::uint8_t> whole, const Task& task);
 
 }  // namespace lodestone::simplify

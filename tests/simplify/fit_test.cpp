@@ -176,7 +176,7 @@ TEST(SplitWorst, adds_triangles_and_keeps_the_surface_whole) {
   const Mesh original = bumpy(60);
   const FitTarget target(original);
   const FittedLevel level(target, collapsed(original, 700), {});
-  const SplitResult split = split_worst(level, 0.5, 40, false, {}, {});
+  const SplitResult split = split_worst(level, 0.5, 40, false, {}, {}, {});
   EXPECT_GT(split.mesh.triangles.size(), level.mesh().triangles.size());
   EXPECT_LE(split.mesh.triangles.size(), level.mesh().triangles.size() + 41);
   const Topology t = topology_of(split.mesh);
@@ -189,7 +189,7 @@ TEST(SplitWorst, of_neighbours_that_have_been_cut) {
   const FitTarget target(original);
   for (const std::size_t triangles : {200, 700, 2000}) {
     const FittedLevel level(target, collapsed(original, triangles), {});
-    const SplitResult split = split_worst(level, 0, level.mesh().triangles.size(), false, {}, {});
+    const SplitResult split = split_worst(level, 0, level.mesh().triangles.size(), false, {}, {}, {});
     EXPECT_GT(split.mesh.triangles.size(), level.mesh().triangles.size());
     const Topology t = topology_of(split.mesh);
     EXPECT_TRUE(t.closed && t.manifold);

@@ -1,0 +1,24 @@
+// Triangles of a surface that pass through each other.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lodestone/base/task.h"
+#include "lodestone/spatial/bvh.h"
+
+namespace lodestone::spatial {
+
+/// Whether a side of one triangle passes through the other. Touching is no crossing, nor is lying in one plane. In
+/// double precision: what is within rounding of touching may be told either way.
+bool triangles_cross(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b);
+
+/// Pairs of triangles of the tree's surface that cross and share no vertex, the lower number first, in order; only
+/// those with one that is `wanted` (one a triangle, non-zero = wanted; empty = all). O(n log n) unless boxes overlap
+/// much.
+std::vector<std::array<std::uint32_t, 2>> crossings(const Bvh& tree, std::span<const std::uint8_t> wanted,
+                                                    const Task& task);
+
+}  // namespace lodestone::spatial
