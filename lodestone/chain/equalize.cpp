@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "lodestone/core/adjacency.h"
 #include "lodestone/simplify/split_worst.h"
 
 namespace lodestone::chain::detail {
@@ -56,6 +57,14 @@ std::vector<float> weights_for(const FittedLevel& level, const Mesh& split, cons
 
 }  // namespace
 
+void hold_borders(const Mesh& mesh, float weight, std::vector<float>& weights, const Task& task) {
+  const EdgeTriangles edges = edge_triangles(mesh, task);
+  for (const Edge& edge : edges.edges) {
+    if (edge.count != 1) continue;
+    for (const std::uint32_t v : {edge.a, edge.b}) weights[v] = std::max(weights[v], weight);
+  }
+}
+
 std::vector<std::uint8_t> at_places(const Mesh& mesh, const std::vector<Vec3f>& places) {
   std::vector<std::uint8_t> found(mesh.vertex_count(), 0);
   for (std::size_t v = 0; v < found.size(); ++v) {
@@ -70,8 +79,8 @@ Result<FittedLevel> equalize(const ShapeSource& source, const FittedLevel& level
   if (options.fits) {
     const auto share = static_cast<std::size_t>(kSplitShare * static_cast<double>(level.mesh().triangles.size()));
     split = simplify::split_worst(level, kSplit, std::max<std::size_t>(2, share), source.options.keep_border,
-                                  at_places(level.mesh(), source.locked_places),
-                                  at_places(level.mesh(), options.stay), task);
+                                  at_places(level.mesh(), source.locked_places), at_places(level.mesh(), options.stay),
+                                  task);
     std::sort(split.pulled.begin(), split.pulled.end(), before);
   } else {
     split.mesh = level.mesh();
@@ -81,6 +90,7 @@ Result<FittedLevel> equalize(const ShapeSource& source, const FittedLevel& level
   collapse.record_log = false;
   collapse.locked = at_places(split.mesh, source.locked_places);
   collapse.weights = weights_for(level, split.mesh, options);
+  if (options.keeps_borders) hold_borders(split.mesh, kKeep, collapse.weights, task);
   Result<simplify::EdgeCollapseResult> made = simplify::collapse_edges(split.mesh, collapse, task);
   if (!made) return fail(made.error());
   FittedLevel next(source.target, std::move(made->mesh), task, &level);
@@ -91,7 +101,8 @@ Result<FittedLevel> equalize(const ShapeSource& source, const FittedLevel& level
   const std::vector<std::uint8_t> pulled = at_places(next.mesh(), split.pulled);
   const std::vector<std::uint8_t> stay = at_places(next.mesh(), options.stay);
   for (std::size_t v = 0; v < fit.locked.size(); ++v) {
-    if (kept[v] != 0 || pulled[v] != 0 || stay[v] != 0) fit.locked[v] = 1;  // fitting would let those out again that were pulled in
+    if (kept[v] != 0 || pulled[v] != 0 || stay[v] != 0)
+      fit.locked[v] = 1;  // fitting would let those out again that were pulled in
   }
   next.fit(fit, task);
   return next;

@@ -26,6 +26,7 @@ constexpr double kBad = 0.7;
 constexpr double kMostFactor = 8;    // by so much of a weight in one round at most,
 constexpr double kMostWeight = 1e9;  // and in all;
 constexpr double kMeanSlack = 1.01;  // the mean may rise by a hundredth for a smaller maximum
+constexpr float kBorder = 3;         // weight of borders, so that they pay little for what gains weight elsewhere
 constexpr int kWeightedRounds = 2;
 
 // Equalizing rounds: how many at most, and how many without a smaller maximum end them.
@@ -75,6 +76,7 @@ Result<FittedLevel> weighted(const ShapeSource& source, FittedLevel best, const 
   const FittedLevel::Faults start_faults = best.faults(task);
   for (int round = 0; round < kWeightedRounds && !task.cancelled(); ++round) {
     raise_weights(source.start, current, options.weights, task);
+    hold_borders(source.start, kBorder, options.weights, task);
     Result<simplify::EdgeCollapseResult> made = simplify::collapse_edges(source.start, options, task.part(0.3));
     if (!made) return fail(made.error());
     if (made->mesh.triangles.empty() || task.cancelled()) break;
@@ -203,6 +205,7 @@ Result<FittedLevel> fewest_within_goal(const ShapeSource& source, FittedLevel le
   const FittedLevel::Faults most_faults = level.faults(task);
   EqualizeOptions options;
   options.fits = fits;
+  options.keeps_borders = false;
   double shrink = 0;
   while (shrink < kLeastShrink && !task.cancelled()) {
     const std::size_t now = level.mesh().triangles.size();

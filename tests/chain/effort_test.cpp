@@ -7,6 +7,7 @@
 
 #include "lodestone/chain/build_ladder.h"
 #include "lodestone/core/topology.h"
+#include "lodestone/spatial/crossings.h"
 #include "support/shapes.h"
 
 namespace lodestone::chain {
@@ -163,6 +164,26 @@ TEST(Effort, turns_no_face_inward) {
     return count;
   };
   EXPECT_LE(inward(Effort::best), inward(Effort::fast));
+}
+
+// Two shells that are near each other: moving must not push one through the other.
+TEST(Effort, adds_no_crossings) {
+  for (const float inner : {0.95F, 0.97F, 0.99F}) {
+    Mesh shell = bumpy(40).meshes.front();
+    const auto count = static_cast<std::uint32_t>(shell.positions.size());
+    const std::vector<Vec3f> outer = shell.positions;
+    const std::vector<Triangle> outward = shell.triangles;
+    for (const Vec3f& p : outer) shell.positions.push_back(p * inner);
+    for (const Triangle& t : outward) shell.triangles.push_back({t[0] + count, t[2] + count, t[1] + count});
+    const Model model = make_model(shell);
+    const auto crossings_of = [&](Effort effort) {
+      const SimplifyModelResult made = simplified(model, to_triangles(1200), effort);
+      if (inner < 0.96F) EXPECT_EQ(made.level.method == "edge collapse", effort == Effort::fast);
+      const spatial::Surface surface = *spatial::flatten(made.level.model, {});
+      return spatial::crossings(spatial::Bvh(surface), {}, {}).size();
+    };
+    EXPECT_LE(crossings_of(Effort::best), crossings_of(Effort::fast)) << inner;
+  }
 }
 
 TEST(Effort, can_be_cancelled_while_shaping) {
