@@ -178,7 +178,9 @@ TEST(Effort, adds_no_crossings) {
     const Model model = make_model(shell);
     const auto crossings_of = [&](Effort effort) {
       const SimplifyModelResult made = simplified(model, to_triangles(1200), effort);
-      if (inner < 0.96F) EXPECT_EQ(made.level.method == "edge collapse", effort == Effort::fast);
+      if (inner < 0.96F) {
+        EXPECT_EQ(made.level.method == "edge collapse", effort == Effort::fast);
+      }
       const spatial::Surface surface = *spatial::flatten(made.level.model, {});
       return spatial::crossings(spatial::Bvh(surface), {}, {}).size();
     };
