@@ -13,6 +13,7 @@
 #include "lodestone/core/model.h"
 #include "lodestone/simplify/fit.h"
 #include "lodestone/spatial/closest_batch.h"
+#include "lodestone/spatial/crossings.h"
 
 namespace lodestone::chain::detail {
 
@@ -65,7 +66,7 @@ void raise_weights(const Mesh& start, const FittedLevel& level, std::vector<floa
 }
 
 // The start collapsed again, vertices where the level is worst weighing more; the smallest maximum.
-Result<FittedLevel> weighted(const ShapeSource& source, FittedLevel best, const Task& task) {
+Result<FittedLevel> weighted(const ShapeSource& source, FittedLevel best, Effort effort, const Task& task) {
   EdgeCollapseOptions options = source.options;
   options.target_triangles = best.mesh().triangles.size();
   options.record_log = false;
@@ -73,7 +74,8 @@ Result<FittedLevel> weighted(const ShapeSource& source, FittedLevel best, const 
   options.locked = at_places(source.start, source.locked_places);
   FittedLevel current = best;
   const double start_mean = best.mean();
-  const FittedLevel::Faults start_faults = best.faults(task);
+  FittedLevel::Faults most_faults = best.faults(task);
+  bool knows_original = false;
   for (int round = 0; round < kWeightedRounds && !task.cancelled(); ++round) {
     raise_weights(source.start, current, options.weights, task);
     hold_borders(source.start, kBorder, options.weights, task);
@@ -82,7 +84,16 @@ Result<FittedLevel> weighted(const ShapeSource& source, FittedLevel best, const 
     if (made->mesh.triangles.empty() || task.cancelled()) break;
     current = FittedLevel(source.target, std::move(made->mesh), task);
     if (!(current.max() < best.max()) || current.mean() > kMeanSlack * start_mean) continue;
-    if (current.faults(task).no_more_than(start_faults)) best = current;
+    // Collapses leave some of the faults that an original has: these may be others, but for what is to be fitted.
+    const FittedLevel::Faults faults = current.faults(task);
+    if (!faults.no_more_than(most_faults) && effort == Effort::normal && !knows_original) {
+      const spatial::Surface& original = source.target.surface();
+      most_faults.crossings =
+          std::max(most_faults.crossings, spatial::crossings(source.target.tree(), {}, task).size());
+      most_faults.folds = std::max(most_faults.folds, spatial::folds(original).size());
+      knows_original = true;
+    }
+    if (faults.no_more_than(most_faults)) best = current;
   }
   return best;
 }
@@ -259,7 +270,7 @@ Result<FittedLevel> shaped_best(const ShapeSource& source, FittedLevel level, co
   const FittedLevel::Faults plain_faults = level.faults(task);
   // Fitting holds borders and what is not manifold; where these are worst, only collapsing otherwise helps.
   if (has_borders(level.mesh(), task)) {
-    Result<FittedLevel> start = weighted(source, std::move(level), task);
+    Result<FittedLevel> start = weighted(source, std::move(level), Effort::best, task);
     if (!start) return start;
     level = std::move(*start);
   }
@@ -286,8 +297,8 @@ Result<FittedLevel> shaped_best(const ShapeSource& source, FittedLevel level, co
 Result<Mesh> shape_level(const ShapeSource& source, Mesh plain, Effort effort, const Task& task) {
   if (effort == Effort::fast || plain.triangles.empty()) return plain;
   FittedLevel level(source.target, std::move(plain), task);
-  Result<FittedLevel> shaped =
-      effort == Effort::best ? shaped_best(source, std::move(level), task) : weighted(source, std::move(level), task);
+  Result<FittedLevel> shaped = effort == Effort::best ? shaped_best(source, std::move(level), task)
+                                                      : weighted(source, std::move(level), effort, task);
   if (shaped && source.goal > 0 && source.options.weights.empty() && !task.cancelled()) {
     shaped = fewest_within_goal(source, std::move(*shaped), effort == Effort::best, task);
   }

@@ -12,7 +12,6 @@
 #include "lodestone/simplify/fit_volume_detail.h"
 #include "lodestone/spatial/closest_batch.h"
 #include "lodestone/spatial/crossings.h"
-#include "lodestone/spatial/neighbors.h"
 
 namespace lodestone::simplify {
 
@@ -146,31 +145,19 @@ std::vector<FittedLevel::Worst> FittedLevel::worst() const {
 const spatial::Surface& FittedLevel::surface() const { return state_->known.level; }
 
 FittedLevel::Faults FittedLevel::faults(const Task& task) const {
-  constexpr double kFold = -0.98480775301220806;  // cosine of 170 degrees
   const spatial::Surface& level = state_->known.level;
   Faults faults;
   faults.vertices.resize(state_->mesh.vertex_count(), 0);
   if (level.triangles.empty()) return faults;
-  const auto mark = [&](std::uint32_t t) {
-    for (const std::uint32_t v : level.triangles[t]) faults.vertices[state_->mesh_vertex[v]] = 1;
-  };
-  for (const auto& [t, u] : spatial::crossings(spatial::Bvh(level, task), {}, task)) {
-    ++faults.crossings;
-    mark(t);
-    mark(u);
-  }
-  const std::vector<std::array<std::uint32_t, 3>> neighbors = spatial::triangle_neighbors(level);
-  std::vector<Vec3d> normals;
-  for (std::size_t t = 0; t < level.triangles.size(); ++t) {
-    const auto [a, b, c] = level.corners(t);
-    normals.push_back(normalized(scaled_normal(a, b, c)));
-  }
-  for (std::uint32_t t = 0; t < normals.size(); ++t) {
-    for (const std::uint32_t other : neighbors[t]) {
-      if (other == kNone || other < t || !(dot(normals[t], normals[other]) < kFold)) continue;
-      ++faults.folds;
-      mark(t);
-      mark(other);
+  const auto crossings = spatial::crossings(spatial::Bvh(level, task), {}, task);
+  const auto folds = spatial::folds(level);
+  faults.crossings = crossings.size();
+  faults.folds = folds.size();
+  for (const auto* pairs : {&crossings, &folds}) {
+    for (const auto& pair : *pairs) {
+      for (const std::uint32_t t : pair) {
+        for (const std::uint32_t v : level.triangles[t]) faults.vertices[state_->mesh_vertex[v]] = 1;
+      }
     }
   }
   return faults;

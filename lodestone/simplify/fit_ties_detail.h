@@ -59,7 +59,8 @@ struct Known {
 };
 
 /// Finds all partners. With what is known of a level that has triangles in common with this one, only those partners
-/// are looked for that the others could change; the result is the same. O((points + triangles) log triangles).
+/// are looked for that the others could change; the ties are the same, and what look_at_worst() found on triangles that
+/// are there still is kept. O((points + triangles) log triangles).
 Ties make_ties(const FitTarget& target, const spatial::Surface& level, const Task& task, const Known* known = nullptr);
 
 /// Looks closely at triangles whose worst is above `share` of the maximum, if that was not done before: many points on

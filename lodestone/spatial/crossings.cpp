@@ -5,6 +5,8 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/math/box.h"
+#include "lodestone/math/triangle.h"
+#include "lodestone/spatial/neighbors.h"
 
 namespace lodestone::spatial {
 
@@ -80,6 +82,23 @@ std::vector<std::array<std::uint32_t, 2>> crossings(const Bvh& tree, std::span<c
         return a;
       });
   std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+std::vector<std::array<std::uint32_t, 2>> folds(const Surface& surface) {
+  constexpr double kFold = -0.98480775301220806;  // cosine of 170 degrees between normals
+  const std::vector<std::array<std::uint32_t, 3>> neighbors = triangle_neighbors(surface);
+  std::vector<Vec3d> normals;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto [a, b, c] = surface.corners(t);
+    normals.push_back(normalized(scaled_normal(a, b, c)));
+  }
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  for (std::uint32_t t = 0; t < normals.size(); ++t) {
+    for (const std::uint32_t other : neighbors[t]) {
+      if (other != kNone && other > t && dot(normals[t], normals[other]) < kFold) pairs.push_back({t, other});
+    }
+  }
   return pairs;
 }
 

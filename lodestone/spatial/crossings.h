@@ -1,4 +1,4 @@
-// Triangles of a surface that pass through each other.
+// Triangles of a surface that pass through each other, or lie on each other.
 #pragma once
 
 #include <array>
@@ -20,5 +20,9 @@ bool triangles_cross(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& 
 /// much.
 std::vector<std::array<std::uint32_t, 2>> crossings(const Bvh& tree, std::span<const std::uint8_t> wanted,
                                                     const Task& task);
+
+/// Pairs of triangles that meet at an edge and lie on each other, by an angle of less than 10 degrees, the lower number
+/// first, in order. O(n).
+std::vector<std::array<std::uint32_t, 2>> folds(const Surface& surface);
 
 }  // namespace lodestone::spatial

@@ -146,7 +146,7 @@ def gltf(t):
     """The Khronos validator finds no error in what is written."""
     for path in t.models("textured"):
         for compression in ("none", "meshopt", "draco"):
-            out, _ = t.build(path, "--levels", 3, "--compress", compression)
+            out, _ = t.build(path, "--levels", 3, "--effort", "fast", "--compress", compression)
             if out is None:
                 continue
             status, text = node(t, "validate_gltf.mjs", out)
@@ -158,7 +158,7 @@ def three(t):
     """three.js loads what is written; textures, skins and animations are still there."""
     wanted = {"CesiumMan.glb": "skins 1 animations 1", "Fox.gltf": "skins 1 animations 3"}
     for path in t.models("textured"):
-        out, _ = t.build(path, "--levels", 3)
+        out, _ = t.build(path, "--levels", 3, "--effort", "fast")
         if out is None:
             continue
         status, text = node(t, "load_three.mjs", out)

@@ -61,5 +61,16 @@ TEST(Crossings, of_a_clean_surface_are_none) {
   EXPECT_TRUE(crossings(Bvh(surface), {}, {}).empty());
 }
 
+TEST(Folds, are_edges_where_triangles_lie_on_each_other) {
+  for (const float lift : {0.0F, 0.1F, 0.3F}) {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.5F, 1, 0}, {0.5F, 1, lift}};
+    mesh.triangles = {{0, 1, 2}, {1, 0, 3}};
+    const Surface surface = *flatten(make_model(std::move(mesh)), {});
+    EXPECT_EQ(folds(surface).size(), lift < 0.17F ? 1U : 0U) << lift;
+  }
+  EXPECT_TRUE(folds(*flatten(make_model(test::cube()), {})).empty());
+}
+
 }  // namespace
 }  // namespace lodestone::spatial
