@@ -128,7 +128,7 @@ class LevelMaker {
   bool is_better(const Cut& made, const Cut& plain, double goal) const {
     const LevelError &now = made.level.error, &then = plain.level.error;
     if (made.level.triangles > plain.level.triangles) return false;
-    if (goal > 0) return now.measured_error <= goal;
+    if (goal > 0 && made.level.triangles < plain.level.triangles) return now.measured_error <= goal;
     const double slack = effort_ == Effort::normal ? kMeanSlack : 1;
     const bool no_worse = now.measured_error <= then.measured_error && now.mean_error <= slack * then.mean_error;
     return no_worse && (now.measured_error < then.measured_error || now.mean_error < then.mean_error);
@@ -212,18 +212,23 @@ struct Starts {
   std::size_t shaped = 0;  // the prefix of the last level
 };
 
-// Shapes a level to as few triangles as `limit` allows. Fitting brings one that is somewhat coarser than the plain one
-// within the limit, and collapses that were not limited one by one make better triangles: that start first.
-Result<void> shape_fewest(LevelMaker& maker, Search& search, double limit, const Task& task) {
+// Shapes a level to as few triangles as `limit` allows, fewer than the last level has (`last`, its prefix). Fitting
+// brings one that is somewhat coarser than the plain one within the limit, and collapses that were not limited one by
+// one make better triangles: that start first.
+Result<void> shape_fewest(LevelMaker& maker, Search& search, std::size_t last, double limit, const Task& task) {
   constexpr double kCoarserStart = 0.8;
   const CollapsePlan& plan = maker.plan();
-  const std::size_t plain = search.good, fewer = plan.prefix_for(static_cast<std::size_t>(
-                                             kCoarserStart * static_cast<double>(plan.triangles_after(plain))));
-  for (const std::size_t start : {std::max(plain, fewer), plain}) {
-    Result<Cut> cut = maker.shaped(start, task.part(0.5), limit);
+  const std::size_t plain = search.good;
+  const auto fewer = static_cast<std::size_t>(kCoarserStart * static_cast<double>(plan.triangles_after(plain)));
+  std::vector<std::size_t> starts{std::max(plain, plan.prefix_for(fewer)), plain, std::max(plain, last)};
+  starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
+  for (const std::size_t start : starts) {
+    Result<Cut> cut = maker.shaped(start, task.part(0.3), limit);
     if (!cut) return fail(cut.error());
-    if (cut->level.error.measured_error <= limit) {
-      cut->prefix = std::max(start, plan.prefix_for(cut->level.triangles));
+    // One that has fewer triangles than the plan's end is not the end.
+    const std::size_t reached = std::min(plan.prefix_for(cut->level.triangles), plan.size() - 1);
+    if (cut->level.error.measured_error <= limit && std::max(start, reached) > last) {
+      cut->prefix = std::max(start, reached);
       search.good = cut->prefix;
       return search.take(std::move(cut));
     }
@@ -246,14 +251,12 @@ Result<Cut> find_error_cut(LevelMaker& maker, Starts& starts, double limit, cons
       search.run(plan, limit, plan.size(), [&](std::size_t probe) { return maker.plain(probe, probes.part(0.1)); });
   if (!found) return fail(found.error());
   starts.plain = search.good;
-  if (search.good < starts.shaped) {  // shaped, the last level holds what plain ones there don't
-    search.good = starts.shaped;
-    search.best.reset();
-  }
   if (shapes && search.good < plan.size()) {
     const Task shaping = task.part(0.7, "shaping");
-    if (const Result<void> ok = shape_fewest(maker, search, limit, shaping); !ok) return fail(ok.error());
+    if (const Result<void> ok = shape_fewest(maker, search, starts.shaped, limit, shaping); !ok)
+      return fail(ok.error());
   }
+  if (search.good < starts.shaped) search.good = starts.shaped;  // shaped, the last level holds what plain ones don't
   if (!search.best || search.best->prefix != search.good) {
     if (const Result<void> ok = search.take(maker.plain(search.good, task)); !ok) return fail(ok.error());
   }

@@ -122,6 +122,7 @@ void keep_where_bad(const FittedLevel& level, const FittedLevel& coarser, double
   const std::vector<FittedLevel::Worst> worst = coarser.worst();
   const spatial::Surface surface = simplify::surface_of(coarser.mesh(), task);
   const spatial::Bvh tree(surface, task);
+  if (task.cancelled() || surface.triangles.empty()) return;
   std::vector<Vec3d> points;
   for (std::size_t v = 0; v < level.mesh().vertex_count(); ++v) {
     points.push_back(level.mesh().position(static_cast<std::uint32_t>(v)));
@@ -211,46 +212,51 @@ Result<std::optional<FittedLevel>> within_goal(const ShapeSource& source, const 
   return std::make_optional(std::move(*level));
 }
 
-// Fewer and fewer triangles within the goal; the level itself where it can't be brought there.
-Result<FittedLevel> fewest_within_goal(const ShapeSource& source, FittedLevel level, bool fits, const Task& task) {
-  const FittedLevel::Faults most_faults = level.faults(task);
+// Fewer and fewer triangles within the goal; nothing where the level can't be brought there as it is.
+Result<std::optional<FittedLevel>> fewest_within_goal(const ShapeSource& source, const FittedLevel& start, bool fits,
+                                                      const Task& task) {
+  const FittedLevel::Faults most_faults = start.faults(task);
   EqualizeOptions options;
   options.fits = fits;
   options.keeps_borders = false;
-  double shrink = 0;
-  while (shrink < kLeastShrink && !task.cancelled()) {
+  std::optional<FittedLevel> best;
+  double shrink = 1;  // as it is at first
+  while (shrink < kLeastShrink || !best) {
+    if (task.cancelled()) break;
+    const FittedLevel& level = best ? *best : start;
     const std::size_t now = level.mesh().triangles.size();
-    const double share = shrink > 0 ? shrink : 1;
     const Task part = task.part(0.05, fmt::format("{} triangles", with_separators(now)));
-    options.most_triangles = static_cast<std::size_t>(share * static_cast<double>(now));
+    options.most_triangles = static_cast<std::size_t>(shrink * static_cast<double>(now));
+    if (options.most_triangles == 0) break;
     Result<std::optional<FittedLevel>> next = within_goal(source, level, most_faults, options, part);
     if (!next) return fail(next.error());
     if (*next) {
-      level = std::move(**next);
-      if (shrink == 0) shrink = kShrink;
+      if (!best) shrink = kShrink;
+      best = std::move(*next);
     } else {
-      if (shrink == 0) break;  // not even as it is
+      if (!best) break;
       shrink = (1 + shrink) / 2;
     }
   }
-  return level;
+  return best;
 }
 
 // The volume is met again, if that costs next to nothing.
-void meet_volume(FittedLevel& level, const std::vector<std::uint8_t>& locked, const Task& task) {
+void meet_volume(FittedLevel& level, const std::vector<std::uint8_t>& locked, const FittedLevel::Faults& most,
+                 const Task& task) {
   FittedLevel met = level;
   simplify::FitOptions fit;
   fit.solves = 0;
   fit.volume = true;
   fit.locked = locked;
   met.fit(fit, task);
-  if (met.max() <= kVolumeMax * level.max() && met.mean() <= kVolumeMean * level.mean()) level = std::move(met);
+  const bool is_near = met.max() <= kVolumeMax * level.max() && met.mean() <= kVolumeMean * level.mean();
+  if (is_near && met.faults(task).no_more_than(most)) level = std::move(met);
 }
 
 // Fits without adding faults: where some come up, the vertices there stay, and all is fitted again.
 void fit_without_faults(FittedLevel& level, simplify::FitOptions options, const FittedLevel::Faults& most,
                         const Task& task) {
-  if (options.locked.empty()) options.locked.assign(level.mesh().vertex_count(), 0);
   for (int attempt = 0; attempt < kFitAttempts && !task.cancelled(); ++attempt) {
     FittedLevel next = level;
     next.fit(options, task);
@@ -259,6 +265,7 @@ void fit_without_faults(FittedLevel& level, simplify::FitOptions options, const 
       level = std::move(next);
       return;
     }
+    options.locked.resize(level.mesh().vertex_count(), 0);
     for (std::size_t v = 0; v < options.locked.size(); ++v) {
       if (faults.vertices[v] != 0) options.locked[v] = 1;
     }
@@ -288,7 +295,7 @@ Result<FittedLevel> shaped_best(const ShapeSource& source, FittedLevel level, co
     level = std::move(*evened);
   }
   if (!source.locked_places.empty()) fit.locked = at_places(level.mesh(), source.locked_places);
-  meet_volume(level, fit.locked, task);
+  meet_volume(level, fit.locked, plain_faults, task);
   return level;
 }
 
@@ -296,15 +303,26 @@ Result<FittedLevel> shaped_best(const ShapeSource& source, FittedLevel level, co
 
 Result<Mesh> shape_level(const ShapeSource& source, Mesh plain, Effort effort, const Task& task) {
   if (effort == Effort::fast || plain.triangles.empty()) return plain;
-  FittedLevel level(source.target, std::move(plain), task);
-  Result<FittedLevel> shaped = effort == Effort::best ? shaped_best(source, std::move(level), task)
-                                                      : weighted(source, std::move(level), effort, task);
-  if (shaped && source.goal > 0 && source.options.weights.empty() && !task.cancelled()) {
-    shaped = fewest_within_goal(source, std::move(*shaped), effort == Effort::best, task);
-  }
+  const bool fits = effort == Effort::best, has_goal = source.goal > 0;
+  // With weights, triangles are not shifted away from where they are wanted.
+  if (has_goal && !source.options.weights.empty()) return plain;
+  const FittedLevel level(source.target, std::move(plain), task);
+  Result<FittedLevel> shaped = fits ? shaped_best(source, level, task) : weighted(source, level, effort, task);
   if (task.cancelled()) return cancelled_error("shaping");
   if (!shaped) return fail(shaped.error());
-  return shaped->mesh();
+  if (!has_goal) return shaped->mesh();
+  // What fitting spoils is not gone into: from the plain level then, and at last as without fitting.
+  struct Way {
+    const FittedLevel* start;
+    bool fits;
+  };
+  for (const Way& way : {Way{&*shaped, fits}, Way{&level, fits}, Way{&level, false}}) {
+    Result<std::optional<FittedLevel>> fewest = fewest_within_goal(source, *way.start, way.fits, task);
+    if (task.cancelled()) return cancelled_error("shaping");
+    if (!fewest) return fail(fewest.error());
+    if (*fewest) return (*fewest)->mesh();
+  }
+  return level.mesh();
 }
 
 }  // namespace lodestone::chain::detail

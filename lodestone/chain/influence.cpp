@@ -91,6 +91,9 @@ Result<std::vector<VertexInfluence>> vertex_influences(const Model& model, const
       }
     }
     if (!influence.spheres.empty()) add_spheres(model, m, influence.spheres, out[m]);
+    // Where nothing weighs more, there are no weights: levels can be shaped as without them.
+    const std::vector<float>& weights = out[m].weights;
+    if (std::all_of(weights.begin(), weights.end(), [](float w) { return w == 1; })) out[m].weights.clear();
   }
   if (!found) {
     return fail(ErrorCode::bad_argument, fmt::format("no mesh has an attribute '{}'", influence.weight_attribute), {},

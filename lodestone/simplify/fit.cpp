@@ -166,16 +166,21 @@ FittedLevel::Faults FittedLevel::faults(const Task& task) const {
 void FittedLevel::look_at(Vec3d place, bool on_original, const Task& task) {
   detail::Known& known = state_->known;
   if (known.level.triangles.empty() || state_->target.surface().triangles.empty()) return;
-  const spatial::Nearest on_level = spatial::Bvh(known.level, task).closest(place);
+  const spatial::Bvh tree(known.level, task);
+  if (task.cancelled()) return;
+  const spatial::Nearest on_level = tree.closest(place);
   const Vec3d partner = on_original ? place : state_->target.tree().closest(place).point;
   const auto [a, b, c] = known.level.corners(on_level.triangle);
   const std::array<double, 3> w = barycentric(on_level.point, a, b, c);
   const auto distance = static_cast<float>(length(partner - on_level.point));
   const detail::Worst found{distance, static_cast<float>(w[1]), static_cast<float>(w[2]), partner};
-  for (detail::Worst* worst : {&known.ties.close[on_level.triangle], &known.ties.worst[on_level.triangle]}) {
-    if (found.distance > worst->distance) *worst = found;
-  }
+  detail::Worst& worst = known.ties.worst[on_level.triangle];
+  if (found.distance > worst.distance) worst = found;
   known.ties.max = std::max(known.ties.max, static_cast<double>(distance));
+  // What is kept of a triangle says that it was looked at closely.
+  detail::look_at_worst(state_->target, known.level, suspect_share(state_->target), known.ties, task);
+  detail::Worst& close = known.ties.close[on_level.triangle];
+  if (found.distance > close.distance) close = found;
 }
 
 void FittedLevel::fit(const FitOptions& options, const Task& task) {
@@ -200,7 +205,8 @@ void FittedLevel::fit(const FitOptions& options, const Task& task) {
   for (const std::uint32_t t : known.level.drawn) wedges.push_back(mesh.triangles[t]);
   const bool flips = options.flips && !has_look(mesh);
   const double damping = has_look(mesh) ? kDampingWithLook : kDamping;
-  std::vector<Vec3d> facing = facing_of(target, known.level, held, task);
+  std::vector<Vec3d> facing;
+  if (options.solves > 0 || options.volume) facing = facing_of(target, known.level, held, task);
   for (int solve = 0; solve < options.solves && !task.cancelled(); ++solve) {
     detail::Known before = known;
     const std::vector<Triangle> wedges_before = wedges;

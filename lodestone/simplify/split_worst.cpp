@@ -278,8 +278,9 @@ SplitResult split_worst(const FittedLevel& level, double share, std::size_t most
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return worst[a].distance > worst[b].distance; });
-  if (task.cancelled()) return {level.mesh(), {}};
+  if (level.surface().triangles.empty()) return {level.mesh(), {}};
   Splitter splitter(level, keep_borders, stays, task);
+  if (task.cancelled()) return {level.mesh(), {}};
   for (std::uint32_t v = 0; v < whole.size(); ++v) {
     if (whole[v] != 0) splitter.leave_around(v);
   }

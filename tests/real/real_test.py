@@ -158,7 +158,7 @@ def three(t):
     """three.js loads what is written; textures, skins and animations are still there."""
     wanted = {"CesiumMan.glb": "skins 1 animations 1", "Fox.gltf": "skins 1 animations 3"}
     for path in t.models("textured"):
-        out, _ = t.build(path, "--levels", 3, "--effort", "fast")
+        out, _ = t.build(path, "--levels", 3)
         if out is None:
             continue
         status, text = node(t, "load_three.mjs", out)
