@@ -1,4 +1,5 @@
-// Method   measured error -> importance weights -> collapse again, the best round kept; then vertices fitted
+// Method   measured error -> importance weights -> collapse again, the best round kept; then vertices fitted and
+//          triangles shifted; or, for an error to hold, fewer and fewer triangles, certified at each step
 // Source   docs/papers/measured-feedback.md
 #include <algorithm>
 #include <optional>
@@ -44,25 +45,35 @@ constexpr double kRoundsMean = 1.03;                      // how far the mean ma
 constexpr int kSolves = 6;
 constexpr int kFitAttempts = 3;
 
-// Raises the weights of the start's vertices whose closest triangle of the level is among the worst.
-void raise_weights(const Mesh& start, const FittedLevel& level, std::vector<float>& weights, const Task& task) {
+// For each vertex of a mesh, the largest distance found at the triangle of a level that is closest to it; 0 where none
+// is or the task is cancelled.
+std::vector<double> worst_near(const Mesh& mesh, const FittedLevel& level, const Task& task) {
+  std::vector<double> worst(mesh.vertex_count(), 0.0);
   const spatial::Surface surface = simplify::surface_of(level.mesh(), task);
+  if (task.cancelled() || surface.triangles.empty()) return worst;
   const spatial::Bvh tree(surface, task);
   const std::vector<FittedLevel::Worst> all = level.worst();
-  const double limit = kBad * level.max();
-  parallel_for(start.vertex_count(), 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+  parallel_for(worst.size(), 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<Vec3d> points;
-    for (std::size_t v = begin; v < end; ++v) points.push_back(start.position(static_cast<std::uint32_t>(v)));
+    for (std::size_t v = begin; v < end; ++v) points.push_back(mesh.position(static_cast<std::uint32_t>(v)));
     std::vector<spatial::Nearest> closest(points.size());
     spatial::ClosestBatch(tree).find(points, closest);
-    for (std::size_t v = begin; v < end; ++v) {
-      const double worst = all[surface.drawn[closest[v - begin].triangle]].distance;
-      if (!(worst > limit)) continue;
-      const double ratio = worst / limit, factor = std::min(ratio * ratio * ratio * ratio * ratio * ratio, kMostFactor);
-      const double raised = std::min(static_cast<double>(weights[v]) * factor, kMostWeight);
-      weights[v] = std::max(weights[v], static_cast<float>(raised));
-    }
+    for (std::size_t v = begin; v < end; ++v) worst[v] = all[surface.drawn[closest[v - begin].triangle]].distance;
   });
+  return worst;
+}
+
+// Raises the weights of the start's vertices where the level is worst.
+void raise_weights(const Mesh& start, const FittedLevel& level, std::vector<float>& weights, const Task& task) {
+  const std::vector<double> worst = worst_near(start, level, task);
+  const double limit = kBad * level.max();
+  for (std::size_t v = 0; v < worst.size(); ++v) {
+    if (!(worst[v] > limit)) continue;
+    const double ratio = worst[v] / limit;
+    const double factor = std::min(ratio * ratio * ratio * ratio * ratio * ratio, kMostFactor);
+    const double raised = std::min(static_cast<double>(weights[v]) * factor, kMostWeight);
+    weights[v] = std::max(weights[v], static_cast<float>(raised));
+  }
 }
 
 // The start collapsed again, vertices where the level is worst weighing more; the smallest maximum.
@@ -103,36 +114,22 @@ bool has_borders(const Mesh& mesh, const Task& task) {
   return std::any_of(edges.edges.begin(), edges.edges.end(), [](const Edge& e) { return e.count != 2; });
 }
 
-void sort_places(std::vector<Vec3f>& places) {
-  std::sort(places.begin(), places.end(), before);
-  places.erase(std::unique(places.begin(), places.end()), places.end());
-}
-
 // Adds the places of marked vertices.
 void keep_where(const Mesh& mesh, const std::vector<std::uint8_t>& marked, std::vector<Vec3f>& keep) {
   for (std::size_t v = 0; v < marked.size(); ++v) {
     if (marked[v] != 0) keep.push_back(mesh.positions[v]);
   }
-  sort_places(keep);
+  std::sort(keep.begin(), keep.end(), before);
+  keep.erase(std::unique(keep.begin(), keep.end()), keep.end());
 }
 
-// Adds the places of those vertices of a level that are closest to triangles of a coarser one that are beyond the goal.
+// Adds the places of those vertices of a level where a coarser one is beyond a limit.
 void keep_where_bad(const FittedLevel& level, const FittedLevel& coarser, double limit, std::vector<Vec3f>& keep,
                     const Task& task) {
-  const std::vector<FittedLevel::Worst> worst = coarser.worst();
-  const spatial::Surface surface = simplify::surface_of(coarser.mesh(), task);
-  const spatial::Bvh tree(surface, task);
-  if (task.cancelled() || surface.triangles.empty()) return;
-  std::vector<Vec3d> points;
-  for (std::size_t v = 0; v < level.mesh().vertex_count(); ++v) {
-    points.push_back(level.mesh().position(static_cast<std::uint32_t>(v)));
-  }
-  std::vector<spatial::Nearest> closest(points.size());
-  spatial::ClosestBatch(tree).find(points, closest);
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    if (worst[surface.drawn[closest[v].triangle]].distance > limit) keep.push_back(level.mesh().positions[v]);
-  }
-  sort_places(keep);
+  const std::vector<double> worst = worst_near(level.mesh(), coarser, task);
+  std::vector<std::uint8_t> bad(worst.size());
+  for (std::size_t v = 0; v < worst.size(); ++v) bad[v] = worst[v] > limit ? 1 : 0;
+  keep_where(level.mesh(), bad, keep);
 }
 
 // Rounds of equalizing, the smallest maximum; the mean stays below `most_mean`, and no faults are added.
@@ -316,7 +313,9 @@ Result<Mesh> shape_level(const ShapeSource& source, Mesh plain, Effort effort, c
     const FittedLevel* start;
     bool fits;
   };
-  for (const Way& way : {Way{&*shaped, fits}, Way{&level, fits}, Way{&level, false}}) {
+  std::vector<Way> ways{{&*shaped, fits}, {&level, false}};
+  if (fits) ways.insert(ways.begin() + 1, {&level, true});
+  for (const Way& way : ways) {
     Result<std::optional<FittedLevel>> fewest = fewest_within_goal(source, *way.start, way.fits, task);
     if (task.cancelled()) return cancelled_error("shaping");
     if (!fewest) return fail(fewest.error());

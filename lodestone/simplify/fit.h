@@ -44,8 +44,8 @@ class FittedLevel {
   double max() const;
   std::vector<Worst> worst() const;  ///< one a triangle of the mesh
 
-  /// Looks at a place on the original, or on the level: worst() and max() rise where it is farther than was known. What
-  /// is found stays while its triangle does. O(triangles).
+  /// Looks at a place (mesh space) on the original, or on the level: worst() and max() rise where it is farther than
+  /// was known. What is found stays while its triangle does. O(triangles).
   void look_at(Vec3d place, bool on_original, const Task& task);
 
   /// What is wrong with a level whatever its distance: pairs of triangles that cross, edges where two triangles lie on

@@ -11,8 +11,9 @@
 
 namespace lodestone::spatial {
 
-/// Whether a side of one triangle passes through the other. Touching is no crossing, nor is lying in one plane. In
-/// double precision: what is within rounding of touching may be told either way.
+/// Whether a side of one triangle passes through the other, by the signs of tetrahedra's volumes. Touching is no
+/// crossing, nor is lying in one plane. In double precision: what is within rounding of touching may be told either
+/// way.
 bool triangles_cross(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b);
 
 /// Pairs of triangles of the tree's surface that cross and share no vertex, the lower number first, in order; only
