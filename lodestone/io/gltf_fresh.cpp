@@ -20,15 +20,7 @@ Json fresh_node(const Instance& instance, const Mesh& mesh) {
   const std::string& name = instance.name.empty() ? mesh.name : instance.name;
   if (!name.empty()) out["name"] = name;
   out["mesh"] = instance.mesh;
-  const Mat4d all = instance.transform * Mat4d::translation(mesh.offset);
-  if (all.is_identity()) return out;
-  Mat4d linear = all;
-  linear.m[12] = linear.m[13] = linear.m[14] = 0;
-  if (linear.is_identity()) {
-    out["translation"] = {all.m[12], all.m[13], all.m[14]};
-  } else {
-    out["matrix"] = all.m;
-  }
+  place_fresh_node(out, instance, mesh);
   return out;
 }
 
@@ -51,6 +43,19 @@ void add_root(const Mat4d& transform, Json& json, Json& roots) {
 }
 
 }  // namespace
+
+void place_fresh_node(Json& node, const Instance& instance, const Mesh& mesh) {
+  for (const char* key : {"translation", "matrix"}) node.erase(key);
+  const Mat4d all = instance.transform * Mat4d::translation(mesh.offset);
+  if (all.is_identity()) return;
+  Mat4d linear = all;
+  linear.m[12] = linear.m[13] = linear.m[14] = 0;
+  if (linear.is_identity()) {
+    node["translation"] = {all.m[12], all.m[13], all.m[14]};
+  } else {
+    node["matrix"] = all.m;
+  }
+}
 
 Json fresh_primitives(const Mesh& mesh) {
   Json primitives = Json::array();

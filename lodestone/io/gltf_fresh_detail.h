@@ -7,12 +7,17 @@
 
 namespace lodestone::io {
 
-/// Scene, a node an instance (its index is the instance's), meshes whose primitives still lack geometry (one a face
 /// The primitives of a mesh, one a group, without geometry.
 Json fresh_primitives(const Mesh& mesh);
 
-/// group, so that primitive g is group g), and materials with their textures in the pack.
+/// Scene, a node an instance (its index is the instance's), meshes whose primitives still lack geometry (one a face
+/// group, so that primitive g is group g).
 Json make_fresh_document(const Model& model);
+
+/// Gives a node the transform of an instance and its mesh's offset, in place of the one that it has.
+void place_fresh_node(Json& node, const Instance& instance, const Mesh& mesh);
+
+/// Materials with their textures in the pack.
 void add_fresh_materials(const Model& model, Json& json, GltfPack& pack);
 
 /// A primitive without TEXCOORD_0 must not have a material with a texture: it gets that material's twin without.

@@ -129,8 +129,8 @@ Json level_node(const Json& holder, std::size_t mesh, std::size_t level, const J
 
 }  // namespace
 
-void add_node_levels(Json& json, std::size_t node, const std::vector<std::size_t>& level_meshes,
-                     const std::vector<double>& coverage, std::vector<std::string>& warnings) {
+std::vector<std::size_t> add_node_levels(Json& json, std::size_t node, const std::vector<std::size_t>& level_meshes,
+                                         const std::vector<double>& coverage, std::vector<std::string>& warnings) {
   const std::size_t holder = choose_holder(json, node);
   std::vector<std::size_t> ids;
   for (std::size_t k = 0; k < level_meshes.size(); ++k) {
@@ -151,6 +151,7 @@ void add_node_levels(Json& json, std::size_t node, const std::vector<std::size_t
     }
   }
   move_weight_channels(json, node, holder, ids);
+  return ids;
 }
 
 void detach_weight_channels(Json& json, std::size_t node) {

@@ -103,24 +103,24 @@ class SceneWalk {
                   "export the model again");
     }
     seen_[index] = true;
-    const Json& node = nodes_[index];
+    const Json& node = level_of(nodes_[index]);
     const Result<Mat4d> local = local_transform(node, where);
     if (!local) return fail(local.error());
     const Mat4d world = parent * *local;
-    const Json& drawn = level_of(node);
-    if (member(drawn, "mesh") != nullptr) {
-      const Result<std::size_t> mesh = index_member(drawn, "mesh", model_.meshes.size(), "meshes", where);
+    if (member(node, "mesh") != nullptr) {
+      const Result<std::size_t> mesh = index_member(node, "mesh", model_.meshes.size(), "meshes", where);
       if (!mesh) return fail(mesh.error());
       const Result<std::vector<Mat4d>> placings = instancing(data_, node, where, budget_);
       if (!placings) return fail(placings.error());
       if (!model_.meshes[*mesh].triangles.empty()) {
-        const std::uint64_t each = sizeof(Instance) + string_member(node, "name").size();
+        const std::string name = string_member(nodes_[index], "name");
+        const std::uint64_t each = sizeof(Instance) + name.size();
         if (!budget_.take(placings->size() * each)) return unfolds_too_far(data_, "the instances", where);
         for (const Mat4d& placing : *placings) {
           Instance instance;
           instance.mesh = static_cast<std::uint32_t>(*mesh);
           instance.transform = world * placing;
-          instance.name = string_member(node, "name");
+          instance.name = name;
           model_.instances.push_back(std::move(instance));
           data_.instance_nodes.push_back(index);
         }
@@ -137,7 +137,8 @@ class SceneWalk {
     return {};
   }
 
-  // The node that stands for this one at the level to be drawn; it is placed as this one (the writer copies it).
+  // The node that stands for this one and its children at the level to be drawn, with its own transform under the same
+  // parent.
   const Json& level_of(const Json& node) const {
     const Json* extensions = draw_level_ > 0 ? member(node, "extensions") : nullptr;
     const Json* lod = extensions != nullptr ? member(*extensions, kMsftLod) : nullptr;

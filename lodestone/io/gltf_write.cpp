@@ -44,16 +44,35 @@ struct Writer {
   std::vector<bool> rewritten;      // meshes whose level 0 is written anew
 };
 
+// A level's mesh that lies elsewhere in its node than the original's: by another transform or offset.
+bool is_moved(const Model& original, const Model& level, std::size_t instance) {
+  const Instance &then = original.instances[instance], &now = level.instances[instance];
+  return then.transform != now.transform || original.meshes[then.mesh].offset != level.meshes[now.mesh].offset;
+}
+
+// Nodes of a document have children, skins and animations: its levels must lie in them as the original does.
+Result<void> check_placing(const Model& original, const Model& level, std::size_t number) {
+  if (level.meshes.size() != original.meshes.size() || level.instances.size() != original.instances.size()) {
+    return fail(
+        ErrorCode::bad_argument,
+        fmt::format("level {} has {} meshes drawn {} times, the original {} drawn {} times", number,
+                    level.meshes.size(), level.instances.size(), original.meshes.size(), original.instances.size()));
+  }
+  for (std::size_t i = 0; i < original.instances.size(); ++i) {
+    const bool same_mesh = level.instances[i].mesh == original.instances[i].mesh;
+    if (same_mesh && (original.document == nullptr || !is_moved(original, level, i))) continue;
+    return fail(ErrorCode::bad_argument,
+                fmt::format("instance {} of level {} is placed otherwise than the original's", i, number), {},
+                "give it the original's mesh, transform and Mesh::offset");
+  }
+  return {};
+}
+
 Result<void> check(const Model& original, std::span<const Level> levels, const std::filesystem::path& path,
                    Compression compression) {
   for (std::size_t level = 1; level < levels.size(); ++level) {
-    const Model& model = levels[level].model;
-    if (model.meshes.size() != original.meshes.size()) {
-      return fail(
-          ErrorCode::bad_argument,
-          fmt::format("level {} has {} meshes, the original {}", level, model.meshes.size(), original.meshes.size()),
-          path.string());
-    }
+    Result<void> ok = check_placing(original, levels[level].model, level);
+    if (!ok) return fail(ok.error().code, ok.error().what, path.string(), ok.error().remedy);
   }
   const bool missing =
       (compression == Compression::meshopt && !has_meshopt()) || (compression == Compression::draco && !has_draco());
@@ -217,6 +236,16 @@ Result<std::vector<std::size_t>> write_level_meshes(Writer& w, std::size_t level
   return out;
 }
 
+// A new surface may have an offset of its own, which is the node's part.
+void place_moved_levels(Writer& w, std::size_t instance, const std::vector<std::size_t>& nodes) {
+  for (std::size_t k = 0; w.document == nullptr && k < nodes.size(); ++k) {
+    const Model& level = w.levels[k + 1].model;
+    if (!is_moved(w.original, level, instance)) continue;
+    const Instance& placing = level.instances[instance];
+    place_fresh_node(w.json["nodes"][nodes[k]], placing, level.meshes[placing.mesh]);
+  }
+}
+
 Result<void> write_levels(Writer& w, const Task& task) {
   const std::size_t levels = w.levels.size();
   std::vector<std::vector<std::size_t>> meshes;  // level - 1, mesh
@@ -235,8 +264,9 @@ Result<void> write_levels(Writer& w, const Task& task) {
     std::vector<std::size_t> of_node;
     for (const auto& level : meshes) of_node.push_back(level[w.original.instances[i].mesh]);
     const bool told = i < w.options.screen_coverage.size();
-    add_node_levels(w.json, node, of_node, told ? w.options.screen_coverage[i] : std::vector<double>{},
-                    w.report.warnings);
+    const std::vector<std::size_t> nodes = add_node_levels(
+        w.json, node, of_node, told ? w.options.screen_coverage[i] : std::vector<double>{}, w.report.warnings);
+    place_moved_levels(w, i, nodes);
   }
   list_extension(w.json, "extensionsUsed", kMsftLod);
   return {};

@@ -9,6 +9,7 @@
 #include "lodestone/base/file.h"
 #include "lodestone/io/gltf_read.h"
 #include "lodestone/io/gltf_write.h"
+#include "support/shapes.h"
 
 namespace lodestone::io {
 namespace {
@@ -253,6 +254,52 @@ GltfBuilder busy_nodes() {
          {{"sampler", 1}, {"target", {{"node", 3}, {"path", "weights"}}}},
          {{"sampler", 0}, {"target", pointer}}}}}};
   return b;
+}
+
+// Where the corners of what a level draws lie in the world.
+std::vector<Vec3d> drawn_corners(const Model& model) {
+  std::vector<Vec3d> out;
+  for (const Instance& instance : model.instances) {
+    const Mesh& mesh = model.meshes[instance.mesh];
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      for (const std::uint32_t v : mesh.vertices_of(t)) out.push_back(instance.transform.point(mesh.position(v)));
+    }
+  }
+  return out;
+}
+
+TEST_F(GltfLevels, levels_with_an_offset_of_their_own_lie_where_they_should) {
+  Mesh original = lodestone::test::cube();
+  original.offset = {1000, 2000, -3000};
+  Mesh coarse = lodestone::test::tetrahedron();
+  coarse.offset = {1000.5, 2000.25, -3000};
+  Ladder ladder;
+  ladder.levels.resize(2);
+  ladder.original = make_model(original);
+  ladder.levels[1].model = make_model(coarse);
+  for (const Mat4d& placing : {Mat4d{}, Mat4d::translation({5, 6, 7}) * Mat4d::scale({2, 2, 2})}) {
+    ladder.original.instances[0].transform = ladder.levels[1].model.instances[0].transform = placing;
+    for (const char* name : {"out.glb", "out.gltf"}) {
+      ASSERT_TRUE(write_gltf(ladder, folder_ / name, {}));
+      for (std::size_t level = 0; level < 2; ++level) {
+        ReadOptions options;
+        options.draw_level = level;
+        const auto back = read_gltf(folder_ / name, options);
+        ASSERT_TRUE(back) << back.error().line();
+        EXPECT_EQ(drawn_corners(*back), drawn_corners(ladder.model(level))) << name << " level " << level;
+      }
+    }
+  }
+}
+
+TEST_F(GltfLevels, levels_of_a_document_must_be_placed_as_the_original_is) {
+  Ladder ladder = halved(read(two_kinds()), 4);
+  ladder.levels[1].model.meshes[0].offset = {1, 0, 0};
+  EXPECT_FALSE(write_gltf(ladder, folder_ / "out.glb", {}));
+  ladder.levels[1].model.meshes[0].offset = {};
+  EXPECT_TRUE(write_gltf(ladder, folder_ / "out.glb", {}));
+  ladder.levels[1].model.instances.clear();
+  EXPECT_FALSE(write_gltf(ladder, folder_ / "out.glb", {}));
 }
 
 TEST_F(GltfLevels, busy_nodes_hand_their_mesh_to_a_leaf) {
