@@ -127,7 +127,9 @@ std::string table_of(const InfoReport& report) {
   row("meshes", fmt::format("{}, drawn {} times", with_separators(report.meshes), with_separators(report.instances)));
   row("levels", with_separators(report.levels));
   row("components", with_separators(t.components));
-  row("closed", t.closed ? "yes" : "no");
+  row("closed", t.closed                                         ? "yes"
+                : t.boundary_edges == 0 && t.duplicate_faces > 0 ? "no (doubled faces hide its borders)"
+                                                                 : "no");
   row("manifold", t.manifold ? "yes" : "no");
   row("boundary edges", with_separators(t.boundary_edges));
   row("non-manifold edges", with_separators(t.nonmanifold_edges));

@@ -33,6 +33,44 @@ std::uint64_t count_duplicates(const Mesh& mesh, const Task& task) {
   return count;
 }
 
+// A sheet whose faces are all listed twice has no edge with one triangle, and is open all the same. What is left when
+// faces with the same vertices count once, and those that lie back to back not at all, tells.
+Mesh without_doubles(const Mesh& mesh, const Task& task) {
+  struct Face {
+    Triangle sorted;
+    std::uint32_t triangle;
+    bool turned;  // an odd permutation of `sorted`
+  };
+  std::vector<Face> faces;
+  faces.reserve(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle v = mesh.vertices_of(t);
+    if (repeats_vertex(v)) continue;
+    Triangle sorted = v;
+    std::sort(sorted.begin(), sorted.end());
+    const std::size_t lowest = v[0] == sorted[0] ? 0 : v[1] == sorted[0] ? 1 : 2;
+    faces.push_back({sorted, t, v[(lowest + 1) % 3] != sorted[1]});
+  }
+  parallel_sort(faces, task, [](const Face& a, const Face& b) {
+    return std::pair(a.sorted, a.triangle) < std::pair(b.sorted, b.triangle);
+  });
+  Mesh out;
+  out.positions.resize(mesh.positions.size());
+  for (std::size_t i = 0, end = 0; i < faces.size(); i = end) {
+    std::int64_t balance = 0;
+    for (end = i; end < faces.size() && faces[end].sorted == faces[i].sorted; ++end)
+      balance += faces[end].turned ? -1 : 1;
+    if (balance != 0) out.triangles.push_back(faces[i].sorted);
+  }
+  return out;
+}
+
+std::uint64_t count_boundary_edges(const Mesh& mesh, const Task& task) {
+  const EdgeTriangles edges = edge_triangles(mesh, task);
+  return static_cast<std::uint64_t>(
+      std::count_if(edges.edges.begin(), edges.edges.end(), [](const Edge& edge) { return edge.count == 1; }));
+}
+
 // The edges opposite to v must form one path or one ring: no end met by three of them, at most two by one, all
 // connected. O(valence log valence). `ids` and `links` are scratch.
 bool is_manifold_vertex(const Mesh& mesh, std::uint32_t v, std::span<const std::uint32_t> star,
@@ -106,7 +144,13 @@ Topology topology_of(const Mesh& mesh, const Task& task) {
     if (used[v] == 1 && !is_manifold_vertex(mesh, v, stars.of(v), ids, links)) ++out.nonmanifold_vertices;
   }
   out.components = parts_of(mesh).count;
-  out.closed = out.edges > 0 && out.boundary_edges == 0;
+  bool all_cancel = false;
+  if (out.duplicate_faces > 0) {
+    const Mesh single = without_doubles(mesh, task);
+    all_cancel = single.triangles.empty();
+    out.hidden_boundary_edges = count_boundary_edges(single, task);
+  }
+  out.closed = out.edges > 0 && out.boundary_edges == 0 && out.hidden_boundary_edges == 0 && !all_cancel;
   out.manifold = out.edges > 0 && out.nonmanifold_edges == 0 && out.nonmanifold_vertices == 0;
   return out;
 }

@@ -21,8 +21,11 @@ struct Topology {
   std::uint64_t inconsistent_edges = 0;    ///< two triangles walking it the same way
   std::uint64_t nonmanifold_vertices = 0;  ///< whose opposite edges are not one path or ring
   std::uint64_t components = 0;            ///< pieces connected through shared vertices
-  bool closed = false;                     ///< at least one triangle and no boundary edge
-  bool manifold = false;                   ///< at least one triangle, no non-manifold edge or vertex
+  /// Edges with one triangle once doubled faces are told apart from sheets: faces with the same three vertices count
+  /// once, or not at all where as many face either way. 0 where there is no doubled face.
+  std::uint64_t hidden_boundary_edges = 0;
+  bool closed = false;    ///< at least one triangle, no boundary edge, and none hidden by doubled faces
+  bool manifold = false;  ///< at least one triangle, no non-manifold edge or vertex
 };
 
 /// O(n log n).

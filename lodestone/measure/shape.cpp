@@ -15,6 +15,7 @@ void add_topology(Topology& sum, const Topology& one, std::uint64_t times) {
   sum.duplicate_faces += times * one.duplicate_faces;
   sum.edges += times * one.edges;
   sum.boundary_edges += times * one.boundary_edges;
+  sum.hidden_boundary_edges += times * one.hidden_boundary_edges;
   sum.nonmanifold_edges += times * one.nonmanifold_edges;
   sum.inconsistent_edges += times * one.inconsistent_edges;
   sum.nonmanifold_vertices += times * one.nonmanifold_vertices;

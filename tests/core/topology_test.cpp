@@ -35,6 +35,28 @@ TEST(Topology, counts) {
   EXPECT_EQ(topology_of(test::cube_with_seams()).wedges, 24U);
 }
 
+TEST(Topology, doubled_faces_close_no_sheet) {
+  const auto listed_again = [](Mesh mesh, bool turned) {
+    const std::vector<Triangle> once = mesh.triangles;
+    for (const Triangle& t : once) mesh.triangles.push_back(turned ? Triangle{t[0], t[2], t[1]} : t);
+    return topology_of(mesh);
+  };
+  for (const bool turned : {false, true}) {
+    const Topology sheet = listed_again(test::grid(3), turned);
+    EXPECT_EQ(sheet.boundary_edges, 0U) << "as a checker counts them";
+    EXPECT_FALSE(sheet.closed);
+  }
+  EXPECT_EQ(listed_again(test::grid(3), false).hidden_boundary_edges, 12U);
+  EXPECT_TRUE(listed_again(test::torus(8), false).closed);
+  Mesh flap = test::torus(8);  // a face and its back on an edge of a closed surface
+  flap.positions.push_back({9, 9, 9});
+  const auto tip = static_cast<std::uint32_t>(flap.positions.size() - 1);
+  const Triangle t = flap.triangles[0];
+  flap.triangles.push_back({t[0], t[1], tip});
+  flap.triangles.push_back({t[0], tip, t[1]});
+  EXPECT_TRUE(topology_of(flap).closed);
+}
+
 TEST(Topology, a_fan_of_many_triangles_takes_bounded_time) {
   Mesh mesh;
   mesh.positions.push_back({});
