@@ -12,10 +12,16 @@
 #include "lodestone/chain/collapse_plan_detail.h"
 #include "lodestone/chain/ladder_detail.h"
 #include "lodestone/chain/level_error_detail.h"
+#include "lodestone/chain/level_maker_detail.h"
 
 namespace lodestone::chain {
 
 using detail::CollapsePlan;
+using detail::CurvePoint;
+using detail::Cut;
+using detail::InLine;
+using detail::LevelMaker;
+using detail::Starts;
 using measure::Reference;
 
 namespace {
@@ -53,220 +59,6 @@ Result<void> check(const LadderOptions& options) {
   return {};
 }
 
-// Where a few spots make the whole mean, it depends on how many samples hit them: four times as many are taken then.
-// The limit is a relative standard error of 1 % (that of independent samples; stratified ones do better).
-Result<measure::Distance> measure_steadily(const measure::Reference& reference, const Model& model,
-                                           const measure::DistanceOptions& options, const Task& task) {
-  Result<measure::Distance> d = reference.distance_to(model, options, task.part(0.5));
-  constexpr double kSteady = 0.01, kNothing = 1e-7;
-  if (!d || d->mean <= kNothing * d->diagonal) return d;
-  const double spread = d->rms / d->mean;
-  if (spread * spread - 1 <= kSteady * kSteady * static_cast<double>(d->samples)) return d;
-  measure::DistanceOptions more = options;
-  more.samples *= 4;
-  return reference.distance_to(model, more, task.part(0.5));
-}
-
-// A prefix of the plan, made and measured.
-struct Cut {
-  std::size_t prefix = 0;
-  Level level;
-  double simplify_seconds = 0, measure_seconds = 0;
-};
-
-const char* method_of(Effort effort) {
-  if (effort == Effort::fast) return "edge collapse";
-  return effort == Effort::normal ? "edge collapse, weighted by its error" : "edge collapse, fitted by its error";
-}
-
-// Makes and measures levels of one plan.
-class LevelMaker {
- public:
-  LevelMaker(const CollapsePlan& plan, const Reference& reference, const measure::DistanceOptions& distance,
-             Effort effort)
-      : plan_(plan),
-        reference_(reference),
-        distance_(distance),
-        effort_(plan.can_be_shaped() ? effort : Effort::fast) {}
-
-  const CollapsePlan& plan() const { return plan_; }
-  Effort effort() const { return effort_; }
-
-  /// The level that edge collapse alone makes.
-  Result<Cut> plain(std::size_t prefix, const Task& task) const {
-    Cut cut;
-    const Stopwatch making;
-    Result<Model> model = plan_.model_after(prefix, task.part(0.3));
-    if (!model) return fail(model.error());
-    cut.simplify_seconds = making.total();
-    return measured(std::move(cut), prefix, std::move(*model), Effort::fast, task.part(0.7));
-  }
-
-  /// The same shaped by its error, if that is better; else the plain one. With a goal fewer triangles within it are
-  /// better.
-  Result<Cut> shaped(std::size_t prefix, const Task& task, double goal = 0) {
-    Result<Cut> cut = plain(prefix, task.part(effort_ == Effort::fast ? 1.0 : 0.2));
-    if (!cut || effort_ == Effort::fast || prefix == 0) return cut;
-    Cut shaping;
-    const Stopwatch making;
-    Result<Model> model = plan_.shaped_after(prefix, effort_, goal, targets_, task.part(0.6, "shaping"));
-    if (!model) return fail(model.error());
-    shaping.simplify_seconds = cut->simplify_seconds + making.total();
-    shaping.measure_seconds = cut->measure_seconds;
-    Result<Cut> made = measured(std::move(shaping), prefix, std::move(*model), effort_, task.part(0.2));
-    if (!made) return made;
-    if (is_better(*made, *cut, goal)) return made;
-    cut->simplify_seconds = made->simplify_seconds;
-    cut->measure_seconds = made->measure_seconds;
-    cut->level.seconds = cut->simplify_seconds + cut->measure_seconds;
-    return cut;
-  }
-
- private:
-  static constexpr double kMeanSlack = 1.01;
-
-  bool is_better(const Cut& made, const Cut& plain, double goal) const {
-    const LevelError &now = made.level.error, &then = plain.level.error;
-    if (made.level.triangles > plain.level.triangles) return false;
-    if (goal > 0 && made.level.triangles < plain.level.triangles) return now.measured_error <= goal;
-    const double slack = effort_ == Effort::normal ? kMeanSlack : 1;
-    const bool no_worse = now.measured_error <= then.measured_error && now.mean_error <= slack * then.mean_error;
-    return no_worse && (now.measured_error < then.measured_error || now.mean_error < then.mean_error);
-  }
-
-  Result<Cut> measured(Cut cut, std::size_t prefix, Model model, Effort effort, const Task& task) const {
-    const Stopwatch measuring;
-    const Result<measure::Distance> d = measure_steadily(reference_, model, distance_, task);
-    if (!d) return fail(d.error());
-    cut.prefix = prefix;
-    cut.measure_seconds += measuring.total();
-    cut.level.triangles = drawn_triangles(model);
-    cut.level.vanished_parts = plan_.vanished_after(prefix);
-    cut.level.model = std::move(model);
-    cut.level.method = method_of(effort);
-    cut.level.seconds = cut.simplify_seconds + cut.measure_seconds;
-    cut.level.error = detail::level_error(*d);
-    return cut;
-  }
-
-  const CollapsePlan& plan_;
-  const Reference& reference_;
-  const measure::DistanceOptions& distance_;
-  Effort effort_;
-  detail::FitTargets targets_;
-};
-
-// The coarsest cut found whose measured maximum is within a limit, by bisection on the logarithm of the triangle count
-// between `good`, a prefix that is within it or is taken for it, and `bad`, one that is not, until the bracket is
-// within `nearness`. Nothing within the limit: nothing.
-struct Search {
-  std::size_t good, bad;
-  double nearness;
-  std::optional<Cut> best;
-  double simplify_seconds = 0, measure_seconds = 0;
-
-  // The cut becomes the best, whatever its error.
-  Result<void> take(Result<Cut> cut) {
-    if (!cut) return fail(cut.error());
-    simplify_seconds += cut->simplify_seconds;
-    measure_seconds += cut->measure_seconds;
-    best = std::move(*cut);
-    return {};
-  }
-
-  template <class Make>
-  Result<void> probe(double limit, std::size_t prefix, Make&& make) {
-    Result<Cut> cut = make(prefix);
-    if (!cut) return fail(cut.error());
-    if (cut->level.error.measured_error <= limit) {
-      good = prefix;
-      return take(std::move(cut));
-    }
-    simplify_seconds += cut->simplify_seconds;
-    measure_seconds += cut->measure_seconds;
-    bad = prefix;
-    return {};
-  }
-
-  // The prefix to look at next; 0 when the bracket is narrow enough.
-  std::size_t next(const CollapsePlan& plan) const {
-    const auto fine = static_cast<double>(plan.triangles_after(good));
-    const auto coarse = static_cast<double>(plan.triangles_after(std::min(plan.size(), bad)));
-    if (bad <= good + 1 || fine - coarse <= nearness * coarse) return 0;
-    return std::clamp(plan.prefix_for(static_cast<std::size_t>(std::sqrt(fine * coarse))), good + 1, bad - 1);
-  }
-
-  template <class Make>
-  Result<void> run(const CollapsePlan& plan, double limit, std::size_t first, Make&& make) {
-    for (std::size_t prefix = first;;) {
-      if (const Result<void> ok = probe(limit, prefix, make); !ok) return ok;
-      prefix = next(plan);
-      if (prefix == 0) return {};
-    }
-  }
-};
-
-// Where searches for errors have come to: the next, larger error needs nothing finer.
-struct Starts {
-  std::size_t plain = 0;   // the coarsest plain prefix within the last error
-  std::size_t shaped = 0;  // the prefix of the last level
-};
-
-// Shapes a level to as few triangles as `limit` allows, fewer than the last level has (`last`, its prefix). Fitting
-// brings one that is somewhat coarser than the plain one within the limit, and collapses that were not limited one by
-// one make better triangles: that start first.
-Result<void> shape_fewest(LevelMaker& maker, Search& search, std::size_t last, double limit, const Task& task) {
-  constexpr double kCoarserStart = 0.8;
-  const CollapsePlan& plan = maker.plan();
-  const std::size_t plain = search.good;
-  const auto fewer = static_cast<std::size_t>(kCoarserStart * static_cast<double>(plan.triangles_after(plain)));
-  std::vector<std::size_t> starts{std::max(plain, plan.prefix_for(fewer)), plain, std::max(plain, last)};
-  starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
-  for (const std::size_t start : starts) {
-    Result<Cut> cut = maker.shaped(start, task.part(0.3), limit);
-    if (!cut) return fail(cut.error());
-    // One that has fewer triangles than the plan's end is not the end.
-    const std::size_t reached = std::min(plan.prefix_for(cut->level.triangles), plan.size() - 1);
-    if (cut->level.error.measured_error <= limit && std::max(start, reached) > last) {
-      cut->prefix = std::max(start, reached);
-      search.good = cut->prefix;
-      return search.take(std::move(cut));
-    }
-    search.simplify_seconds += cut->simplify_seconds;
-    search.measure_seconds += cut->measure_seconds;
-  }
-  return {};
-}
-
-// The coarsest prefix found whose measured maximum is within `limit`, not finer than the last level: plain levels
-// first, within one per cent; then one shaped from there on. Nothing within the limit: the plain cut where the last
-// level was.
-Result<Cut> find_error_cut(LevelMaker& maker, Starts& starts, double limit, const Task& task) {
-  constexpr double kNear = 0.01;
-  const CollapsePlan& plan = maker.plan();
-  const bool shapes = maker.effort() != Effort::fast;
-  const Task probes = task.part(shapes ? 0.3 : 0.9, "searching");
-  Search search{starts.plain, plan.size() + 1, kNear, {}};
-  const Result<void> found =
-      search.run(plan, limit, plan.size(), [&](std::size_t probe) { return maker.plain(probe, probes.part(0.1)); });
-  if (!found) return fail(found.error());
-  starts.plain = search.good;
-  if (shapes && search.good < plan.size()) {
-    const Task shaping = task.part(0.7, "shaping");
-    if (const Result<void> ok = shape_fewest(maker, search, starts.shaped, limit, shaping); !ok)
-      return fail(ok.error());
-  }
-  if (search.good < starts.shaped) search.good = starts.shaped;  // shaped, the last level holds what plain ones don't
-  if (!search.best || search.best->prefix != search.good) {
-    if (const Result<void> ok = search.take(maker.plain(search.good, task)); !ok) return fail(ok.error());
-  }
-  Cut best = std::move(*search.best);
-  best.simplify_seconds = search.simplify_seconds;
-  best.measure_seconds = search.measure_seconds;
-  best.level.seconds = best.simplify_seconds + best.measure_seconds;
-  return best;
-}
-
 std::string count_shortfall(const CollapsePlan& plan, std::size_t wanted, std::size_t got) {
   return fmt::format("{} triangles were asked for, {} are the fewest: {}", with_separators(wanted),
                      with_separators(got), plan.why_it_ends());
@@ -281,6 +73,71 @@ void add_level(LadderResult& result, Cut cut) {
   result.ladder.levels.push_back(std::move(cut.level));
 }
 
+std::vector<CurvePoint> curve_of(const Ladder& ladder) {
+  std::vector<CurvePoint> out;
+  for (const Level& level : ladder.levels) out.push_back({level.triangles, level.error.measured_error});
+  return out;
+}
+
+// What was asked, and what it would have come to.
+struct Jump {
+  std::size_t wanted = 0;  // triangles
+  CurvePoint made;
+  double diagonal = 0;
+};
+
+Jump jump_of(const Cut& cut, std::size_t wanted) {
+  return {wanted, {cut.level.triangles, cut.level.error.measured_error}, cut.level.error.diagonal};
+}
+
+std::string jump_shortfall(const CollapsePlan& plan, const Jump& jump, std::size_t got) {
+  const bool short_of = plan.triangles_after(plan.size()) > jump.wanted;
+  return fmt::format(
+      "{} triangles were asked for, but errors jump below {} (to {:.2g} % of the diagonal with {}), so it ends "
+      "there{}{}; --method voxel --then-collapse makes levels anew (with --texture-size N textured ones), --force "
+      "takes "
+      "them as they are",
+      with_separators(jump.wanted), with_separators(got), jump.diagonal > 0 ? 100 * jump.made.error / jump.diagonal : 0,
+      with_separators(jump.made.triangles), short_of ? ": " : "", short_of ? plan.why_it_ends() : "");
+}
+
+// True if a level of so many triangles differs enough from the one before to be worth writing.
+bool shrinks(const LadderResult& result, std::size_t triangles) {
+  return triangles * 100 <= result.ladder.levels.back().triangles * 97;
+}
+
+// True if what the first level starts from is a level already: a surface made anew, or the original without its doubled
+// faces.
+bool starts_coarser(const LadderResult& result, const LadderOptions& options, std::size_t triangles) {
+  return result.ladder.levels.size() == 1 && (options.start || shrinks(result, triangles));
+}
+
+// A level by count: its number, the triangles that are wanted, the prefix for them, and that of the level before.
+struct CountStep {
+  std::size_t number, wanted, prefix, last;
+};
+
+// Makes a level and adds it if its error is in line with those before it; else the coarsest that is, and the ladder
+// ends. False = it ends.
+Result<bool> add_count_level(LadderResult& result, LevelMaker& maker, const CountStep& step,
+                             const LadderOptions& options, const Task& task) {
+  Result<Cut> cut = maker.shaped(step.prefix, task.part(options.force ? 1.0 : 0.7));
+  if (!cut) return fail(cut.error());
+  if (options.force) {
+    add_level(result, std::move(*cut));
+    return true;
+  }
+  const Jump jump = jump_of(*cut, step.wanted);
+  Result<InLine> kept = keep_in_line(maker, std::move(*cut), curve_of(result.ladder), step.last, task.part(0.3));
+  if (!kept) return fail(kept.error());
+  const bool adds = kept->cut && (!kept->jumps || shrinks(result, kept->cut->level.triangles));
+  if (adds) add_level(result, std::move(*kept->cut));
+  if (!kept->jumps) return true;
+  const std::size_t got = result.ladder.levels.back().triangles;
+  result.shortfalls.push_back({step.number, jump_shortfall(maker.plan(), jump, got)});
+  return false;
+}
+
 Result<void> add_count_levels(LadderResult& result, LevelMaker& maker, const std::vector<std::size_t>& targets,
                               const LadderOptions& options, const Task& task) {
   const CollapsePlan& plan = maker.plan();
@@ -289,19 +146,18 @@ Result<void> add_count_levels(LadderResult& result, LevelMaker& maker, const std
     const Task part = task.part(1.0 / static_cast<double>(targets.size()), fmt::format("level {}", i + 1));
     const std::size_t prefix = plan.prefix_for(targets[i]), left = plan.triangles_after(prefix);
     const bool short_of = left > targets[i];
-    // A level that hardly differs from the one before is no level: the ladder ends.
-    const bool shrinks = left * 100 <= result.ladder.levels.back().triangles * 97;
-    if (short_of) result.shortfalls.push_back({i + 1, count_shortfall(plan, targets[i], left)});
-    const bool differs = prefix > last || (options.start && i == 0);  // what it starts from is a level already
-    if (differs && (!short_of || shrinks)) {
-      Result<Cut> cut = maker.shaped(prefix, part);
-      if (!cut) return fail(cut.error());
-      add_level(result, std::move(*cut));
+    const bool is_new = prefix > last || starts_coarser(result, options, left);
+    if (is_new && (!short_of || shrinks(result, left))) {  // one that hardly differs from the one before is none
+      const Result<bool> goes_on = add_count_level(result, maker, {i + 1, targets[i], prefix, last}, options, part);
+      if (!goes_on) return fail(goes_on.error());
+      if (!*goes_on) break;
       last = prefix;
     } else if (!short_of) {
       result.shortfalls.push_back({i + 1, "it would not differ from the level before"});
     }
-    if (short_of) break;
+    if (!short_of) continue;
+    result.shortfalls.push_back({i + 1, count_shortfall(plan, targets[i], left)});
+    break;
   }
   return {};
 }
@@ -315,7 +171,8 @@ Result<void> add_error_levels(LadderResult& result, LevelMaker& maker, const Lad
     Result<Cut> cut = find_error_cut(maker, starts, options.errors[i], part);
     if (!cut) return fail(cut.error());
     const bool holds = cut->level.error.measured_error <= options.errors[i];
-    if (cut->prefix == last && !(options.start && i == 0 && holds)) {
+    const bool is_new = cut->prefix > last || (holds && starts_coarser(result, options, cut->level.triangles));
+    if (!is_new) {
       result.shortfalls.push_back(
           {i + 1,
            fmt::format("nothing coarser than the level before has a measured error within {:.6g}", options.errors[i])});
@@ -436,6 +293,19 @@ Result<SimplifyModelResult> simplify_model(const Model& original, const Simplify
   Result<Cut> cut = by_count ? maker.shaped(plan->prefix_for(options.target_triangles), rest)
                              : find_error_cut(maker, starts, options.max_error, rest);
   if (!cut) return fail(cut.error());
+  std::string jumped;
+  if (by_count && !options.force && cut->level.triangles > options.target_triangles) {
+    const Jump jump = jump_of(*cut, options.target_triangles);
+    Result<InLine> kept = keep_in_line(maker, std::move(*cut), {}, 0, rest);
+    if (!kept) return fail(kept.error());
+    if (!kept->cut) {
+      Result<Cut> finest = maker.plain(0, rest);
+      if (!finest) return fail(finest.error());
+      kept->cut = std::move(*finest);
+    }
+    if (kept->jumps) jumped = jump_shortfall(*plan, jump, kept->cut->level.triangles);
+    *cut = std::move(*kept->cut);
+  }
   result.simplify_seconds += cut->simplify_seconds;
   result.measure_seconds += cut->measure_seconds;
   result.locked = plan->locked();
@@ -443,7 +313,8 @@ Result<SimplifyModelResult> simplify_model(const Model& original, const Simplify
   const bool at_end = cut->prefix == plan->size();
   if (by_count && result.level.triangles > options.target_triangles) {
     result.stop = simplify::StopReason::no_legal_collapse;
-    result.shortfall = count_shortfall(*plan, options.target_triangles, result.level.triangles);
+    result.shortfall =
+        jumped.empty() ? count_shortfall(*plan, options.target_triangles, result.level.triangles) : std::move(jumped);
   } else if (by_count) {
     result.stop = simplify::StopReason::reached_target;
   } else {

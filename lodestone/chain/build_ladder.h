@@ -30,6 +30,9 @@ struct LadderOptions {
   Influence influence;                 ///< where the model matters more, what stays
   Effort effort = Effort::fast;        ///< how much work each level is worth
   measure::DistanceOptions distance;   ///< samples and seed of the measurement
+  /// With counts and ratios: levels are written however far their errors jump. Without, a ladder ends where an error is
+  /// above twice what the curve of the finer levels leads one to expect, as it is when nothing legal is left.
+  bool force = false;
   /// What the coarser levels are collapsed from in place of the original, which they are measured against all the same:
   /// a surface made from it. It has one instance of one mesh, as the original must have.
   std::optional<Model> start;
@@ -65,6 +68,7 @@ struct SimplifyModelOptions {
   Influence influence;
   Effort effort = Effort::fast;
   measure::DistanceOptions distance;
+  bool force = false;  ///< as LadderOptions::force, for counts that can't be reached
 };
 
 struct SimplifyModelResult {

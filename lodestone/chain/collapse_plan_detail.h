@@ -56,6 +56,8 @@ class CollapsePlan {
   /// Whether any mesh allows it. O(triangles).
   bool can_be_shaped() const;
 
+  /// Whether parts may vanish.
+  bool prunes() const { return prunes_; }
   const simplify::LockCounts& locked() const { return locked_; }
   /// Why the plan ends where it ends, in plain words.
   std::string why_it_ends() const;
