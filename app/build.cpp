@@ -14,6 +14,7 @@
 #include "app/table.h"
 #include "app/text.h"
 #include "app/verbs.h"
+#include "app/verify.h"
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 #include "lodestone/io/flatten.h"
@@ -24,19 +25,18 @@ namespace fs = std::filesystem;
 namespace {
 
 void add_levels(BuildReport& report, const chain::LadderResult& result, const io::WriteReport& written,
-                const BuildPlan& plan) {
+                const measure::View& view) {
   const Ladder& ladder = result.ladder;
-  const bool pruned = plan.influence.influence.vanishes();
   for (std::size_t i = 0; i < ladder.levels.size(); ++i) {
     const Level& level = ladder.levels[i];
     LevelReport row;
     row.level = i;
     row.triangles = level.triangles;
-    if (pruned) row.vanished_parts = level.vanished_parts;
+    if (report.prunes) row.vanished_parts = level.vanished_parts;
     row.error = level.error;
     row.method = level.method;
     if (!result.images.empty()) row.image = result.images[i];
-    row.switch_distance = measure::switch_distance(level.error.error, 1, plan.view);
+    row.switch_distance = measure::switch_distance(level.error.error, 1, view);
     row.bytes = written.level_bytes[i];
     row.file = written.files[i].string();
     row.seconds = level.seconds;
@@ -72,6 +72,7 @@ Result<chain::LadderOptions> prepare_job(const BuildPlan& plan, Model& model, Bu
     const Result<void> decoded = io::decode_base_colors(model, warnings, task);
     if (!decoded) return fail(decoded.error());
   }
+  report.prunes = options->influence.vanishes();
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
   notes.insert(notes.end(), warnings.begin(), warnings.end());
   for (const std::string& note : notes) console.note(fmt::format("{}: {}", report.input, note));
@@ -131,7 +132,7 @@ Result<void> write_job(const BuildJob& job, const BuildPlan& plan, const chain::
   const Result<io::WriteReport> written = io::write_ladder(result.ladder, job.output, write, task);
   if (!written) return fail(written.error());
   for (const fs::path& file : written->files) console.wrote(file.string());
-  add_levels(report, result, *written, plan);
+  add_levels(report, result, *written, plan.view);
   for (const std::string& warning : written->warnings) {
     console.note(fmt::format("{}: {}", job.output.string(), warning));
     report.warnings.push_back(warning);
@@ -174,6 +175,12 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   const Result<void> written = write_job(job, plan, *result, page, report, console, task.part(0.1, "writing"));
   if (!written) return fail(written.error());
   report.write_seconds = watch.lap();
+  if (plan.verify) {
+    const Result<VerifyReport> verified =
+        verify_levels(report, plan.distance, task.part(0.3, "reading back what was written"));
+    if (!verified) return fail(verified.error());
+    report.verified = *verified;
+  }
   report.total_seconds = watch.total();
   report.peak_memory_bytes = peak_memory_bytes();
   return report;
@@ -200,8 +207,7 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
   const std::string unit = report.unit.empty() ? "" : " (" + report.unit + ")";
   Table table;
   for (const char* title : {"level", "triangles", "share"}) table.add_column(title);
-  const bool pruned = plan.influence.influence.vanishes();
-  if (pruned) table.add_column("parts gone");
+  if (report.prunes) table.add_column("parts gone");
   table.add_column("error" + unit);
   table.add_column("relative");
   table.add_column("1 px from" + unit);
@@ -237,6 +243,10 @@ std::string table_of(const BuildReport& report, const BuildPlan& plan) {
   if (report.levels.size() > 1) {
     out += all_certain ? "errors are certified: no point of either surface is farther from the other\n"
                        : "errors are certified, but for those with ~: the largest that was found\n";
+  }
+  if (report.verified) {
+    out += fmt::format("read back from what was written and measured again: all as told, within {} of each error\n",
+                       percent(report.verified->largest_difference));
   }
   if (pictures) {
     out += fmt::format("silhouette, PSNR, SSIM: pictures from {} sides compared with the original's\n",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <system_error>
 
@@ -69,6 +70,8 @@ Result<BuildPlan> build_plan(const Arguments& arguments) {
     return fail(ErrorCode::bad_argument, "--effort is for levels by edge collapse", {}, "leave out --method voxel");
   }
   plan.compression = compression_of(arguments);
+  plan.force = arguments.has("--force");
+  plan.verify = arguments.has("--verify");
   plan.image_error = arguments.has("--image-error");
   plan.report = arguments.has("--report");
   plan.options = report_options(arguments);
@@ -80,16 +83,33 @@ std::size_t planned_levels(const BuildPlan& plan) {
   return 1 + std::max({plan.ratios.size(), plan.triangles.size(), plan.errors.size(), plan.distances.size()});
 }
 
+namespace {
+
+// Triangles of the coarsest level that is asked for; 0 where an error decides, and levels by voxels have no parts to
+// lose.
+std::size_t smallest_level(const BuildPlan& plan, const Model& model) {
+  if (plan.voxel) return std::numeric_limits<std::size_t>::max();
+  if (!plan.triangles.empty()) return plan.triangles.back();
+  const auto drawn = static_cast<double>(drawn_triangles(model));
+  if (!plan.ratios.empty()) return static_cast<std::size_t>(plan.ratios.back() * drawn);
+  if (!plan.errors.empty() || !plan.distances.empty()) return 0;
+  return static_cast<std::size_t>(drawn /
+                                  static_cast<double>(std::uint64_t{1} << (std::max<std::size_t>(1, plan.levels) - 1)));
+}
+
+}  // namespace
+
 Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& model, std::vector<std::string>& notes,
                                             std::vector<std::string>& warnings) {
   chain::LadderOptions options;
   if (plan.levels > 0) options.levels = plan.levels;
   options.ratios = plan.ratios;
   options.triangles = plan.triangles;
-  Result<chain::Influence> influence = plan.influence.for_model(model, warnings);
+  Result<chain::Influence> influence = plan.influence.for_model(model, smallest_level(plan, model), warnings);
   if (!influence) return fail(influence.error());
   options.influence = std::move(*influence);
   options.effort = plan.voxel ? chain::Effort::fast : plan.effort;
+  options.force = plan.force;
   options.distance = plan.distance;
   if (plan.image_error) options.image.emplace();
   if (!plan.ratios.empty()) {

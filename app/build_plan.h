@@ -28,6 +28,8 @@ struct BuildPlan {
   measure::DistanceOptions distance;
   VolumeRequest volume;
   std::optional<VoxelMethod> voxel;           ///< --method voxel
+  bool force = false;                         ///< --force
+  bool verify = false;                        ///< --verify
   bool image_error = false;                   ///< --image-error
   bool report = false;                        ///< --report
   std::vector<report::ReportOption> options;  ///< all that was asked, for the report

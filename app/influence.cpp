@@ -9,6 +9,7 @@
 #include "app/text.h"
 #include "lodestone/base/file.h"
 #include "lodestone/base/units.h"
+#include "lodestone/chain/thin_model.h"
 
 namespace lodestone::app {
 namespace {
@@ -167,6 +168,24 @@ OptionGroup method_group() {
             "as --prune, and the parts that stay grow to the area of what they stand for: foliage, lattices",
             {},
             Completion::none},
+           {"--keep-parts",
+            "",
+            "",
+            "",
+            "",
+            "no part vanishes; without, --keep-area is taken where most of the area is in many thin parts and the "
+            "levels would leave each only a few triangles",
+            {},
+            Completion::none},
+           {"--force",
+            "",
+            "",
+            "",
+            "",
+            "levels by count are written however far their errors jump; without, the ladder ends where an error is "
+            "above twice what the levels before lead one to expect",
+            {},
+            Completion::none},
            {"--only",
             "",
             "FILE",
@@ -199,6 +218,11 @@ Result<InfluencePlan> influence_of(const Arguments& arguments, const LengthRules
   plan.influence.weight_attribute = arguments.text("--weight-by");
   plan.influence.prune = arguments.has("--prune");
   plan.influence.keep_area = arguments.has("--keep-area");
+  plan.keep_parts = arguments.has("--keep-parts");
+  if (plan.keep_parts && plan.influence.vanishes()) {
+    return fail(ErrorCode::bad_argument, "--keep-parts and --prune or --keep-area are asked for at once", {},
+                "choose one");
+  }
   if (arguments.has("--lock")) {
     if (const Result<void> ok = read_lock(arguments.text("--lock"), plan); !ok) return fail(ok.error());
   }
@@ -218,8 +242,26 @@ Result<InfluencePlan> influence_of(const Arguments& arguments, const LengthRules
   return plan;
 }
 
-Result<chain::Influence> InfluencePlan::for_model(const Model& model, std::vector<std::string>& warnings) const {
+namespace {
+
+// A tree or a lattice needs parts that vanish while others grow, or its levels are ruins.
+void choose_keep_area(const Model& model, std::size_t smallest, chain::Influence& influence,
+                      std::vector<std::string>& warnings) {
+  const chain::ThinShare share = chain::thin_share(model);
+  if (!chain::needs_keep_area(share, smallest)) return;
+  influence.keep_area = true;
+  warnings.push_back(
+      fmt::format("{} parts, {} of the area in thin ones: small parts may vanish and others grow, as by --keep-area "
+                  "(--keep-parts: none vanishes)",
+                  with_separators(share.parts), percent(share.area)));
+}
+
+}  // namespace
+
+Result<chain::Influence> InfluencePlan::for_model(const Model& model, std::size_t smallest,
+                                                  std::vector<std::string>& warnings) const {
   chain::Influence out = influence;
+  if (!keep_parts && !influence.vanishes() && influence.only.empty()) choose_keep_area(model, smallest, out, warnings);
   for (const std::size_t sphere : chain::empty_spheres(model, influence.spheres)) {
     warnings.push_back(fmt::format("{}: this sphere holds no vertex", sphere_places[sphere]));
   }

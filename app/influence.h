@@ -1,5 +1,5 @@
-// --weight-by, --weights, --lock, --keep-border, --weld, --join, --only, --prune, --keep-area: where a model matters
-// more, what stays, and what may vanish.
+// --weight-by, --weights, --lock, --keep-border, --weld, --join, --only, --prune, --keep-area, --keep-parts: where a
+// model matters more, what stays, and what may vanish.
 #pragma once
 
 #include <optional>
@@ -22,9 +22,14 @@ struct InfluencePlan {
   std::vector<std::string> sphere_places;  ///< where each sphere stands on the command line or in a file
   std::vector<std::string> only_places;    ///< the same for each range of triangles
 
-  /// With lengths in the model's units. `warnings` gets spheres that hold no vertex. Errors: bad_argument (a unit, and
-  /// the model has none), bad_format (a triangle that the model has not).
-  Result<chain::Influence> for_model(const Model& model, std::vector<std::string>& warnings) const;
+  bool keep_parts = false;  ///< no part vanishes that was not asked to
+
+  /// With lengths in the model's units, for levels of down to `smallest` triangles (0 = as few as may be). Where the
+  /// model is made of thin parts, and nothing was asked, parts may vanish and others grow. `warnings` gets that, and
+  /// spheres that hold no vertex. Errors: bad_argument (a unit, and the model has none), bad_format (a triangle that
+  /// the model has not).
+  Result<chain::Influence> for_model(const Model& model, std::size_t smallest,
+                                     std::vector<std::string>& warnings) const;
 };
 
 /// Reads the options, and the files of --weights and --only. Errors: bad_argument, cannot_read, bad_format (with the

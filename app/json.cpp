@@ -76,6 +76,10 @@ Json build_json(const BuildReport& report) {
                      {"total", report.total_seconds}};
   json["peak_memory_bytes"] = report.peak_memory_bytes;
   if (!report.report.empty()) json["report"] = report.report;
+  if (report.verified) {
+    json["verified"] = {{"levels", report.verified->levels},
+                        {"largest_difference", report.verified->largest_difference}};
+  }
   json["warnings"] = report.warnings;
   json["shortfalls"] = Json::array();
   for (const chain::Shortfall& shortfall : report.shortfalls) {

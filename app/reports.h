@@ -30,19 +30,27 @@ struct LevelReport {
   double seconds = 0;
 };
 
+/// What reading levels back has shown.
+struct VerifyReport {
+  std::size_t levels = 0;         ///< measured again, beside level 0
+  double largest_difference = 0;  ///< of an error read back to the one told, as a share of it
+};
+
 struct BuildReport {
   std::string input;
   std::string failure;  ///< the error's line; empty = it worked and the rest holds
   std::string report;   ///< the page's file; empty without --report
   std::size_t triangles = 0;
   double diagonal = 0;
-  std::string unit;  ///< empty = the model has none
+  std::string unit;     ///< empty = the model has none
+  bool prunes = false;  ///< parts may vanish
   std::vector<LevelReport> levels;
   double read_seconds = 0, levels_seconds = 0, measure_seconds = 0, write_seconds = 0, total_seconds = 0;
   std::uint64_t peak_memory_bytes = 0;
   std::uint64_t total_bytes = 0;
   std::vector<std::string> warnings;
   std::vector<chain::Shortfall> shortfalls;
+  std::optional<VerifyReport> verified;  ///< with --verify
 };
 
 struct SimplifyReport {

@@ -147,6 +147,15 @@ OptionGroup measuring_group(std::uint64_t samples) {
 }
 
 OptionGroup with_image_error(OptionGroup group) {
+  group.options.push_back(
+      {"--verify",
+       "",
+       "",
+       "",
+       "",
+       "read each level back from what was written, measure it again, and fail if it is not as told",
+       {},
+       Completion::none});
   group.options.push_back({"--image-error",
                            "",
                            "",

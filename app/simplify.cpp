@@ -24,6 +24,7 @@ struct SimplifyPlan {
   chain::Effort effort = chain::Effort::fast;
   InfluencePlan influence;
   measure::DistanceOptions distance;
+  bool force = false;
 };
 
 Result<void> check_target(const Arguments& arguments) {
@@ -63,6 +64,7 @@ Result<SimplifyPlan> plan_of(const Arguments& arguments) {
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
   if (!distance) return fail(distance.error());
   plan.distance = *distance;
+  plan.force = arguments.has("--force");
   plan.effort = effort_of(arguments, plan.error.empty() ? chain::Effort::fast : chain::Effort::normal);
   return plan;
 }
@@ -70,11 +72,9 @@ Result<SimplifyPlan> plan_of(const Arguments& arguments) {
 Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const Model& model, std::size_t triangles,
                                                 const Console& console, std::vector<std::string>& warnings) {
   chain::SimplifyModelOptions options;
-  Result<chain::Influence> influence = plan.influence.for_model(model, warnings);
-  if (!influence) return fail(influence.error());
-  options.influence = std::move(*influence);
   options.effort = plan.effort;
   options.distance = plan.distance;
+  options.force = plan.force;
   if (!plan.ratio.empty()) {
     console.note(fmt::format("keeping {} of {} triangles", percent(plan.ratio[0]), with_separators(triangles)));
     options.target_triangles =
@@ -89,6 +89,9 @@ Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const 
     console.detail(fmt::format("--error {} is {} in model units (diagonal {})", plan.error[0].text,
                                short_number(options.max_error), short_number(diagonal)));
   }
+  Result<chain::Influence> influence = plan.influence.for_model(model, options.target_triangles, warnings);
+  if (!influence) return fail(influence.error());
+  options.influence = std::move(*influence);
   return options;
 }
 
@@ -162,7 +165,7 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
   report.write_seconds = watch.lap();
 
   report.triangles = result->level.triangles;
-  if (plan->influence.influence.vanishes()) report.vanished_parts = result->level.vanished_parts;
+  if (options->influence.vanishes()) report.vanished_parts = result->level.vanished_parts;
   report.error = result->level.error;
   report.method = result->level.method;
   report.stop_reason = simplify::to_string(result->stop);
