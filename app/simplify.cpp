@@ -75,13 +75,17 @@ Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const 
   options.effort = plan.effort;
   options.distance = plan.distance;
   options.force = plan.force;
+  if (!plan.triangles.empty()) options.target_triangles = plan.triangles[0];
   if (!plan.ratio.empty()) {
-    console.note(fmt::format("keeping {} of {} triangles", percent(plan.ratio[0]), with_separators(triangles)));
     options.target_triangles =
         std::max<std::size_t>(1, static_cast<std::size_t>(plan.ratio[0] * static_cast<double>(triangles) + 0.5));
-  } else if (!plan.triangles.empty()) {
-    options.target_triangles = plan.triangles[0];
-  } else {
+  }
+  Result<chain::Influence> influence = plan.influence.for_model(model, options.target_triangles, warnings);
+  if (!influence) return fail(influence.error());
+  options.influence = std::move(*influence);
+  if (!plan.ratio.empty()) {
+    console.note(fmt::format("keeping {} of {} triangles", percent(plan.ratio[0]), with_separators(triangles)));
+  } else if (!plan.error.empty()) {
     const double diagonal = bounds_of(model).diagonal();
     const Result<std::vector<double>> errors = to_model_units(plan.error, model, diagonal);
     if (!errors) return fail(errors.error());
@@ -89,9 +93,6 @@ Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const 
     console.detail(fmt::format("--error {} is {} in model units (diagonal {})", plan.error[0].text,
                                short_number(options.max_error), short_number(diagonal)));
   }
-  Result<chain::Influence> influence = plan.influence.for_model(model, options.target_triangles, warnings);
-  if (!influence) return fail(influence.error());
-  options.influence = std::move(*influence);
   return options;
 }
 

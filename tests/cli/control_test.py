@@ -23,8 +23,13 @@ class Control(Scratch):
     def test_a_canopy_needs_prune_and_keep_area_keeps_its_area(self):
         self.canopy()
         area = self.json("info", "canopy.obj")["area"]
-        done = self.lod("simplify", "canopy.obj", "-o", "x.ply", "--ratio", "10%", "--samples", "2000", code=3)
+        done = self.lod("simplify", "canopy.obj", "-o", "x.ply", "--ratio", "10%", "--samples", "2000", "--keep-parts", code=3)
         self.assertIn("--prune", done.stderr)
+        chosen = self.lod("simplify", "canopy.obj", "-o", "x.ply", "--ratio", "10%", "--samples", "2000")
+        self.assertIn("--keep-area", chosen.stderr)
+        self.lod("simplify", "canopy.obj", "-o", "y.ply", "--ratio", "10%", "--samples", "2000", "--keep-area")
+        self.assertEqual((self.folder / "x.ply").read_bytes(), (self.folder / "y.ply").read_bytes())
+        self.assertNotIn("--keep-area", self.lod("simplify", "statue.ply", "-o", "x.ply", "--ratio", "10%", "--samples", "2000").stderr)
         for option, least, most in (("--prune", 0, 0.3), ("--keep-area", 0.9, 1.05)):
             built = self.json("build", "canopy.obj", "-o", "l{level}.ply", "--ratio", "50%,10%", option, "--samples", "2000")
             gone = [level["vanished_parts"] for level in built["levels"]]
@@ -38,7 +43,7 @@ class Control(Scratch):
     def test_a_lattice_keeps_its_area(self):
         self.lod("sample", "tower", "-o", "tower.glb")
         area = self.json("info", "tower.glb")["area"]
-        self.json("simplify", "tower.glb", "-o", "thin.ply", "--ratio", "15%", "--samples", "2000")
+        self.json("simplify", "tower.glb", "-o", "thin.ply", "--ratio", "15%", "--samples", "2000", "--keep-parts")
         self.json("simplify", "tower.glb", "-o", "kept.ply", "--ratio", "15%", "--keep-area", "--samples", "2000")
         self.assertLess(self.json("info", "thin.ply")["area"], 0.7 * area)
         self.assertAlmostEqual(self.json("info", "kept.ply")["area"] / area, 1, delta=0.03)
