@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <span>
 
+#include "lodestone/base/units.h"
+
 namespace lodestone::app {
 
 namespace {
@@ -41,7 +43,7 @@ Result<VolumeWords> parse_volume_words(const std::vector<std::string>& words) {
   io::RawLayout raw;
   for (std::size_t k = 0; k < 3; ++k) {
     raw.size[k] = static_cast<std::uint32_t>(std::strtoul(words[4 + k].c_str(), nullptr, 10));
-    raw.spacing[k] = std::strtod(words[7 + k].c_str(), nullptr);
+    raw.spacing[k] = parse_number(words[7 + k]).value_or(0);
   }
   raw.type = words[10];
   raw.big_endian = words[11] == "1";

@@ -4,29 +4,32 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 
 namespace lodestone {
 
-std::optional<double> parse_number(std::string_view text) {
+std::optional<LeadingNumber> leading_number(std::string_view text) {
   double value = 0;
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end || !std::isfinite(value)) return std::nullopt;
-  return value;
+  if (error != std::errc{} || !std::isfinite(value)) return std::nullopt;
+  return LeadingNumber{value, text.substr(static_cast<std::size_t>(stop - text.data()))};
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  const std::optional<LeadingNumber> number = leading_number(text);
+  if (!number || !number->rest.empty()) return std::nullopt;
+  return number->value;
 }
 
 Result<Length> parse_length(std::string_view text) {
-  const std::string copy(text);
-  char* end = nullptr;
-  const double number = std::strtod(copy.c_str(), &end);
-  const std::string_view unit(end);
+  const std::optional<LeadingNumber> read = leading_number(text);
   const auto bad = [&](std::string_view why) {
     return fail(ErrorCode::bad_argument, fmt::format("'{}' {}", text, why), {},
                 "write 0.001 or 0.1% (of the diagonal) or a length such as 2mm, 0.5m");
   };
-  if (end == copy.c_str()) return bad("is not a length");
-  if (!std::isfinite(number) || number < 0) return bad("is not a finite length of at least 0");
+  if (!read) return bad("is not a length");
+  const auto [number, unit] = *read;
+  if (number < 0) return bad("is not a finite length of at least 0");
   struct Unit {
     std::string_view name;
     double metres;

@@ -17,6 +17,15 @@ struct Length {
   enum class Kind { relative, metres } kind = Kind::relative;
 };
 
+/// A number that a text begins with, and what follows it.
+struct LeadingNumber {
+  double value = 0;
+  std::string_view rest;
+};
+/// The longest finite decimal number at the head of the text, written with a point whatever the locale; nothing where
+/// there is none. Neither blanks nor a "+" may stand before it.
+std::optional<LeadingNumber> leading_number(std::string_view text);
+
 /// The whole of the text as a finite number, nothing for any other text.
 std::optional<double> parse_number(std::string_view text);
 

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <new>
 
+#include "lodestone/base/units.h"
 #include "lodestone/io/dicom_stack_detail.h"
 #include "lodestone/io/itk_detail.h"
+#include "lodestone/io/plain_numbers_detail.h"
 
 #ifdef LODESTONE_WITH_ITK
 #include <itkGDCMImageIO.h>
@@ -190,14 +192,18 @@ Result<VolumeHeader> header_of(const fs::path& path, const itk::ImageIOBase& io)
   return header;
 }
 
-// Two backslash-separated numbers or more.
-std::vector<double> numbers_of(const std::string& text) {
+// Backslash-separated numbers, each with blanks around it and perhaps a plus; none if one of them is no number.
+std::vector<double> numbers_of(std::string_view text) {
   std::vector<double> out;
-  std::size_t at = 0;
-  while (at < text.size()) {
-    std::size_t end = std::min(text.find('\\', at), text.size());
-    out.push_back(std::atof(text.substr(at, end - at).c_str()));
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\\', at), text.size());
+    std::string_view word = text.substr(at, end - at);
     at = end + 1;
+    word.remove_prefix(std::min(word.find_first_not_of(' '), word.size()));
+    if (word.starts_with('+')) word.remove_prefix(1);
+    const std::optional<LeadingNumber> number = leading_number(word);
+    if (!number) return {};
+    out.push_back(number->value);
   }
   return out;
 }
@@ -296,6 +302,7 @@ VolumeHeader header_of(const SeriesFiles& all, const DicomStack& stack) {
 
 Result<void> read_itk_file(const fs::path& path, const VolumeSink& sink, const Task& task) {
   itk::Object::SetGlobalWarningDisplay(false);
+  const PlainNumbers plain;
   return guarded(path, [&]() -> Result<void> {
     const IoPointer io = reader_for(path);
     if (io == nullptr) return fail(ErrorCode::bad_format, "is no volume of a format that we read", path.string());
@@ -318,6 +325,7 @@ Result<void> read_itk_file(const fs::path& path, const VolumeSink& sink, const T
 Result<void> read_itk_series(const fs::path& folder, const std::vector<fs::path>& files, const std::string& series,
                              const VolumeSink& sink, const Task& task) {
   itk::Object::SetGlobalWarningDisplay(false);
+  const PlainNumbers plain;
   const Result<SeriesFiles> all = list_slices(files, task);
   if (!all) return fail(all.error());
   if (all->files.empty()) return fail(ErrorCode::empty, "holds no DICOM slice", folder.string());
@@ -346,6 +354,7 @@ Result<void> read_itk_series(const fs::path& folder, const std::vector<fs::path>
 
 Result<void> read_itk_pictures(const std::vector<fs::path>& files, const VolumeSink& sink, const Task& task) {
   itk::Object::SetGlobalWarningDisplay(false);
+  const PlainNumbers plain;
   std::array<std::uint32_t, 2> size{};
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (task.cancelled()) return cancelled_error("reading");

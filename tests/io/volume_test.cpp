@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <clocale>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "lodestone/io/dicom_stack_detail.h"
+#include "support/comma_locale.h"
 #include "support/shapes.h"
 
 namespace lodestone::io {
@@ -171,6 +173,31 @@ TEST_F(VolumeFiles, damaged_nifti_2_is_refused) {
   EXPECT_FALSE(read_volume(write("type.nii", nifti2({3, 4, 5, 1, 0}, 1792, 60))));
   EXPECT_FALSE(read_volume(write("flat.nii", nifti2({3, 4, 1, 1, 0}, 2, 60))));
   EXPECT_FALSE(read_volume(folder_ / "not there.nii"));
+}
+
+TEST_F(VolumeFiles, a_program_with_a_decimal_comma_moves_no_voxel) {
+  const std::string values(60, '\5');
+  const fs::path nrrd = write("a.nrrd",
+                              "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 4 5\nspace: left-posterior-superior\n"
+                              "encoding: raw\nspace directions: (0.5,0,0) (0,0.5,0) (0,0,2.5)\n"
+                              "space origin: (0.25,0,100.75)\n\n" +
+                                  values);
+  write("a.zraw", values);
+  const fs::path meta = write("a.mhd",
+                              "ObjectType = Image\nNDims = 3\nDimSize = 3 4 5\nElementSpacing = 0.5 0.5 2.5\n"
+                              "Offset = 0.25 0 100.75\nElementType = MET_UCHAR\nElementDataFile = a.zraw\n");
+  const test::CommaLocale comma;
+  for (const fs::path& path : {nrrd, meta}) {
+    const auto volume = read_volume(path);
+    if (!volume && volume.error().code == ErrorCode::unsupported) GTEST_SKIP() << "built without ITK";
+    ASSERT_TRUE(volume) << volume.error().line();
+    EXPECT_EQ(volume->header.grid.spacing, (Vec3d{0.5, 0.5, 2.5})) << path;
+    EXPECT_EQ(volume->header.to_world.point({0, 0, 0}), (Vec3d{0.25, 0, 100.75})) << path;
+  }
+  EXPECT_EQ(std::use_facet<std::numpunct<char>>(std::locale()).decimal_point(), ',') << "the program's own stays";
+  if (comma.of_c()) {
+    EXPECT_STREQ(std::localeconv()->decimal_point, ",");
+  }
 }
 
 TEST_F(VolumeFiles, folders_and_names) {

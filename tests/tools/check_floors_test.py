@@ -120,6 +120,19 @@ class CheckFloors(unittest.TestCase):
     def test_unknown_room(self):
         self.assert_caught("lodestone/misc/a.cpp", "#include <string>\n", "lodestone/misc/a.cpp", "no room")
 
+    def test_numbers_by_the_locale(self):
+        for word, line in [("strtod", "double x = std::strtod(text, &end);"), ("atof", "return std::atof(text);"),
+                           ("stod", "x = std::stod(text);"), ("sscanf", 'std::sscanf(text, "%lf", &x);'),
+                           ("istringstream", "std::istringstream in(text);"),
+                           ("snprintf", 'std::snprintf(text, 9, "%.3g", x);'),
+                           ("{:L}", 'fmt::format("{:L}", x);')]:
+            with self.subTest(word):
+                self.assert_caught("lodestone/core/a.cpp", f"\n{line}\n", f"lodestone/core/a.cpp:2: {word} ", "locale")
+        self.write("lodestone/core/a.cpp", '// no strtod here\nint strtodo = 0;\nstd::fprintf(stderr, "%s %d\\n", a, 1);\n'
+                                           "auto n = std::strtoull(text, nullptr, 10);\n")
+        status, out = self.run_tool()
+        self.assertEqual(status, 0, out)
+
     def test_nothing_to_check_is_an_error(self):
         shutil.rmtree(self.root / "lodestone")
         shutil.rmtree(self.root / "app")
