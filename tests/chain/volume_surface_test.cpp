@@ -145,5 +145,33 @@ TEST(VolumeSurface, makes_a_mesh_for_each_label) {
   EXPECT_FALSE(surface_of(volume, labels_with(0)));
 }
 
+TEST(VolumeSurface, takes_no_grey_values_for_labels) {
+  constexpr std::uint32_t kSide = 24;
+  std::vector<std::int16_t> values(kSide * kSide * kSide);
+  ScannedVolume volume;
+  volume.header.grid = {{kSide, kSide, kSide}, {-0.5, -0.5, -0.5}, {1, 1, 1}};
+  volume.values = std::span<const std::int16_t>(values);
+  const auto fill = [&](const auto& value) {
+    std::size_t i = 0;
+    for (int z = 0; z < static_cast<int>(kSide); ++z) {
+      for (int y = 0; y < static_cast<int>(kSide); ++y) {
+        for (int x = 0; x < static_cast<int>(kSide); ++x) values[i++] = static_cast<std::int16_t>(value(x, y, z));
+      }
+    }
+  };
+  fill([](int x, int y, int z) { return 1 + 3 * x + 2 * y + z; });
+  const auto grey = surface_of(volume, labels_with(0));
+  ASSERT_FALSE(grey);
+  EXPECT_EQ(grey.error().code, ErrorCode::bad_argument);
+  EXPECT_NE(grey.error().line().find("grey values, not labels; leave --labels out"), std::string::npos);
+  // As many labels in cubes of four voxels, in order; and single voxels whose numbers say nothing.
+  fill([](int x, int y, int z) { return 1 + x / 4 + 6 * (y / 4) + 36 * (z / 4); });
+  const auto cubes = surface_of(volume, labels_with(0));
+  ASSERT_TRUE(cubes) << cubes.error().line();
+  EXPECT_EQ(cubes->model.meshes.size(), 216U);
+  fill([](int x, int y, int z) { return 1 + (x * 37 + y * 101 + z * 59) % 64; });
+  EXPECT_TRUE(surface_of(volume, labels_with(0)));
+}
+
 }  // namespace
 }  // namespace lodestone::chain

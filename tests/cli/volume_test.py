@@ -47,6 +47,10 @@ class Volumes(Scratch):
         self.lod("convert", "labels.raw", "labels.glb", "--labels", "--raw", "12,12,12")
         self.assertEqual(self.json("info", "labels.glb")["meshes"], 2)
 
+    def test_grey_values_are_no_labels(self):
+        done = self.lod("convert", "ball.raw", "b.glb", "--labels", *self.RAW, code=2)
+        self.assert_error(done, "different values", "grey values", "--iso")
+
     def test_patients_stand_upright(self):
         """Whatever a verb makes of a CT volume, glTF's y is the patient's height."""
         head = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 24 24\nspace: left-posterior-superior\nencoding: raw\n"
