@@ -205,7 +205,7 @@ Result<void> check_outputs(const BuildJobs& all, const std::vector<fs::path>& in
   }
   const bool folder_exists = all.folder.empty() || is_folder(all.folder);
   for (const BuildJob& job : all.jobs) {
-    Result<void> checked = check_output(job.output, inputs, compression);
+    Result<void> checked = check_output(job.output, inputs, compression, OutputKind::levels);
     if (checked) checked = io::check_ladder_name(job.output, compression);
     if (!checked && (folder_exists || checked.error().code == ErrorCode::bad_argument)) return checked;
     if (job.report.empty()) continue;

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "app/foreign.h"
+#include "app/json.h"
 #include "app/text.h"
 #include "lodestone/io/read.h"
 #include "lodestone/io/write.h"
@@ -61,7 +62,24 @@ bool would_overwrite(const fs::path& output, const fs::path& input) {
 
 }  // namespace
 
-Result<void> check_output(const fs::path& output, const std::vector<fs::path>& inputs, io::Compression compression) {
+bool is_level_pattern(const fs::path& output) {
+  return output.filename().string().find("{level}") != std::string::npos;
+}
+
+Result<void> check_level(const std::string& input, std::size_t level) {
+  if (level == 0) return {};
+  const std::uint64_t levels = levels_in_file(input);
+  if (levels == 1) {
+    return fail(ErrorCode::bad_argument, "--level is for files with levels (MSFT_lod), this one has none", input,
+                "make them with 'lod build'");
+  }
+  if (level < levels) return {};
+  return fail(ErrorCode::bad_argument, fmt::format("has no level {}, its levels are 0 to {}", level, levels - 1),
+              input);
+}
+
+Result<void> check_output(const fs::path& output, const std::vector<fs::path>& inputs, io::Compression compression,
+                          OutputKind kind) {
   const std::string extension = output.extension().string();
   if (!io::is_writable_extension(extension)) {
     return fail(ErrorCode::bad_argument,
@@ -70,6 +88,10 @@ Result<void> check_output(const fs::path& output, const std::vector<fs::path>& i
                 output.string(), "end it in .glb, .gltf, .ply, .obj, .stl or .off");
   }
   if (const Result<void> name = io::check_model_name(output, compression); !name) return name;
+  if (kind == OutputKind::one_model && is_level_pattern(output)) {
+    return fail(ErrorCode::bad_argument, "has {level} in its name, but one model is written", output.string(),
+                "'lod build' writes a file a level; or leave {level} out");
+  }
   return check_place(output, inputs);
 }
 

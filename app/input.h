@@ -21,12 +21,22 @@ namespace lodestone::app {
 Result<Model> read_input(const std::filesystem::path& path, const Console& console, Task task,
                          const io::ReadOptions& options = {}, const VolumeRequest& volume = {});
 
+/// Whether an output is one model, or may have "{level}" in its name and be a file a level.
+enum class OutputKind { one_model, levels };
+
 /// Checks before the work begins that `output` can be written: a format we write, one that holds the compression, an
-/// existing folder with permission, not a directory, and none of `inputs`. "{level}" in the name stands for any number.
+/// existing folder with permission, not a directory nor write-protected, and none of `inputs`. "{level}" in the name
+/// stands for any number.
 /// What else must not be replaced shows when the input is read: io::check_replaced(). Errors: bad_argument,
 /// cannot_write.
 Result<void> check_output(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs,
-                          io::Compression compression);
+                          io::Compression compression, OutputKind kind = OutputKind::one_model);
+
+/// Whether a file has a level. Errors: bad_argument.
+Result<void> check_level(const std::string& input, std::size_t level);
+
+/// Whether a name stands for a file a level.
+bool is_level_pattern(const std::filesystem::path& output);
 
 /// The part of check_output() that holds for files of any kind: the folder, and that no input is replaced.
 Result<void> check_place(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs);

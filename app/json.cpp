@@ -361,6 +361,7 @@ std::string to_json(const ConvertReport& report) {
   Json json;
   json["input"] = {{"path", report.input}, {"triangles", report.triangles}};
   json["files"] = report.files;
+  if (!report.file_triangles.empty()) json["file_triangles"] = report.file_triangles;
   json["bytes"] = report.bytes;
   json["seconds"] = {{"read", report.read_seconds}, {"write", report.write_seconds}};
   json["warnings"] = report.warnings;

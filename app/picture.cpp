@@ -8,7 +8,6 @@
 #include <system_error>
 
 #include "app/input.h"
-#include "app/json.h"
 #include "lodestone/base/file.h"
 #include "lodestone/io/image_decode.h"
 #include "lodestone/io/image_encode.h"
@@ -36,17 +35,7 @@ Result<std::string> picture_output(const Arguments& arguments) {
 
 Result<Model> read_drawn_level(const std::string& input, std::size_t level, std::vector<std::string>& warnings,
                                const Console& console, const Task& task, const VolumeRequest& volume) {
-  if (level > 0) {
-    const std::uint64_t levels = levels_in_file(input);
-    if (levels == 1) {
-      return fail(ErrorCode::bad_argument, "--level is for files with levels (MSFT_lod), this one has none", input,
-                  "make them with 'lod build'");
-    }
-    if (level >= levels) {
-      return fail(ErrorCode::bad_argument, fmt::format("has no level {}, its levels are 0 to {}", level, levels - 1),
-                  input);
-    }
-  }
+  if (const Result<void> ok = check_level(input, level); !ok) return fail(ok.error());
   io::ReadOptions options;
   options.draw_level = level;
   Result<Model> model = read_input(input, console, task, options, volume);

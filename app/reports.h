@@ -117,8 +117,9 @@ struct InfoReport {
 
 struct ConvertReport {
   std::string input;
-  std::size_t triangles = 0;
+  std::size_t triangles = 0;  ///< of the first file
   std::vector<std::string> files;
+  std::vector<std::size_t> file_triangles;  ///< one a file where each is a level; else empty
   std::uint64_t bytes = 0;
   double read_seconds = 0, write_seconds = 0;
   std::vector<std::string> warnings;

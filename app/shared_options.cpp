@@ -232,6 +232,10 @@ OptionGroup output_group(bool compress) {
   return group;
 }
 
+OptionGroup input_level_group(const char* text) {
+  return {"Input", {{"--level", "", "K", "0", "", text, {}, Completion::none}}};
+}
+
 OptionGroup with_report(OptionGroup group) {
   group.options.push_back(
       {"--report",

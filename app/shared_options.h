@@ -27,6 +27,7 @@ OptionGroup with_image_error(OptionGroup group);     ///< and --image-error (bui
 OptionGroup attribute_group();                       ///< --attributes, --uv-set
 OptionGroup image_group();                           ///< --image, --views, --heat
 OptionGroup output_group(bool compress);             ///< -o, --compress, --json
+OptionGroup input_level_group(const char* text);     ///< --level
 OptionGroup with_report(OptionGroup group);          ///< and --report (build)
 OptionGroup result_group();                          ///< --json alone
 OptionGroup general_group();                         ///< --threads, --quiet, --verbose, --help

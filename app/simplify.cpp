@@ -137,8 +137,12 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
 
   const Result<VolumeRequest> volume = volume_request(arguments);
   if (!volume) return fail(volume.error());
+  const Result<std::uint64_t> level = arguments.count("--level", 0, 1024);
+  if (!level) return fail(level.error());
+  if (const Result<void> there = check_level(input, *level); !there) return fail(there.error());
   Stopwatch watch;
-  Result<Model> model = read_input(input, console, console.task().part(0.15, "reading"), {.levels = false}, *volume);
+  Result<Model> model = read_input(input, console, console.task().part(0.15, "reading"),
+                                   {.levels = false, .draw_level = *level}, *volume);
   if (!model) return fail(model.error());
   if (const Result<void> kept = io::check_replaced(*model, report.output); !kept) return fail(kept.error());
   apply_unit(*model, plan->lengths);

@@ -45,7 +45,8 @@ VerbSpec simplify_spec() {
           "Makes one coarser mesh, down to a count, a share or a measured error.",
           one_model(),
           {single_target_group(), effort_group(), length_group(), method_group(), level_attributes_group(),
-           volume_group(), scan_group(true), measuring_group(kBuildSamples), output_group(true), general_group()},
+           input_level_group("which level of a ladder in a glTF file is the input; 0 = its original"), volume_group(),
+           scan_group(true), measuring_group(kBuildSamples), output_group(true), general_group()},
           {{"lod simplify statue.ply -o small.ply --triangles 5000", "at most 5,000 triangles"},
            {"lod simplify statue.ply -o small.glb --error 0.1%", "as coarse as 0.1 % of the diagonal allows"},
            {"lod simplify statue.ply -o small.obj --ratio 10% --json", "keep a tenth, figures as JSON"}},
@@ -151,11 +152,12 @@ VerbSpec convert_spec() {
   return {"convert",
           "Writes a model in another format.",
           {"INPUT [OUTPUT]", 1, 2, {}, Completion::file},
-          {volume_group(), scan_group(true), output_group(true), general_group()},
+          {input_level_group("write this level of a ladder in a glTF file alone; 0 = its original"), unit_group(),
+           volume_group(), scan_group(true), output_group(true), general_group()},
           {{"lod convert statue.ply statue.stl", "by the names' endings"},
            {"lod convert tower.glb -o tower.ply", "instances are flattened where the format has none"},
-           {"lod convert statue.ply -o packed.glb --compress meshopt", "a smaller GLB"}},
-          "",
+           {"lod convert statue.glb -o statue_LOD{level}.obj", "each level of a ladder as a file of its own"}},
+          "Without --level and {level} a ladder stays a ladder in glTF; other formats take its original.",
           run_convert};
 }
 

@@ -17,6 +17,7 @@
 #include "lodestone/base/task.h"
 #include "lodestone/core/model.h"
 #include "lodestone/io/gltf_document.h"
+#include "lodestone/io/read.h"
 
 namespace lodestone::io {
 
@@ -98,14 +99,19 @@ inline Budget unfold_budget(std::uint64_t file_bytes) { return {file_bytes * kUn
 /// The error of a budget that is used up; `what` unfolds.
 tl::unexpected<Error> unfolds_too_far(const Document::Data& data, std::string_view what, const std::string& where);
 
-/// Container, JSON, buffers, images, views. `path` empty: no other files may be named. `levels` false: drop_levels().
+/// Container, JSON, buffers, images, views. `path` empty: no other files may be named. `options.levels` false:
+/// drop_levels(), or keep_level() of `options.draw_level`.
 Result<std::unique_ptr<Document::Data>> load_document(std::string bytes, std::string name,
-                                                      const std::filesystem::path& path, bool levels,
+                                                      const std::filesystem::path& path, const ReadOptions& options,
                                                       std::vector<std::string>& warnings, const Task& task);
 
 /// Takes out MSFT_lod with the nodes that it names, their meshes and what only these use, as far as they are the last
 /// of their kinds (as our writer leaves them): the indices of all others stay.
 void drop_levels(Json& json);
+
+/// As drop_levels(), but what has levels becomes its level `level` (from 1; its coarsest where it has fewer). Geometry
+/// that nobody names any more loses its bytes, not its indices: returns the views that are to be emptied.
+std::vector<std::size_t> keep_level(Json& json, std::size_t level);
 
 /// "file.glb: accessor 3"
 std::string place(const Document::Data& data, std::string_view what, std::size_t index);

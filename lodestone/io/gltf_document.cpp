@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <utility>
 
 #include "lodestone/base/file.h"
@@ -264,10 +265,18 @@ Result<void> load_views(Loader& loader) {
   return {};
 }
 
+// Nobody names it: it keeps its index and four bytes.
+void empty_view(Document::Data& data, std::size_t view) {
+  static constexpr std::array<std::byte, 4> kNothing{};
+  data.views[view] = {};
+  data.views[view].bytes = kNothing;
+  data.json["bufferViews"][view] = {{"buffer", 0}, {"byteOffset", 0}, {"byteLength", 4}};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Document::Data>> load_document(std::string bytes, std::string name,
-                                                      const std::filesystem::path& path, bool levels,
+                                                      const std::filesystem::path& path, const ReadOptions& options,
                                                       std::vector<std::string>& warnings, const Task& task) {
   auto data = std::make_unique<Document::Data>();
   data->name = std::move(name);
@@ -287,10 +296,15 @@ Result<std::unique_ptr<Document::Data>> load_document(std::string bytes, std::st
   if (!json) return fail(json.error());
   data->json = std::move(*json);
   if (const auto good = check_asset(*data); !good) return fail(good.error());
-  if (!levels) drop_levels(data->json);
+  std::vector<std::size_t> emptied;
+  if (!options.levels && options.draw_level > 0) emptied = keep_level(data->json, options.draw_level);
+  if (!options.levels) drop_levels(data->json);
   if (const auto good = load_buffers(loader); !good) return fail(good.error());
   if (const auto good = load_images(loader); !good) return fail(good.error());
   if (const auto good = load_views(loader); !good) return fail(good.error());
+  for (const std::size_t view : emptied) {
+    if (view < data->views.size()) empty_view(*data, view);
+  }
   return data;
 }
 

@@ -67,7 +67,7 @@ Result<Model> read_document(std::string bytes, std::string name, const std::file
   model.meters_per_unit = 1;
   model.uv_origin_top = true;
   Result<std::unique_ptr<Document::Data>> loaded =
-      load_document(std::move(bytes), std::move(name), path, options.levels, model.warnings, task.part(0.3));
+      load_document(std::move(bytes), std::move(name), path, options, model.warnings, task.part(0.3));
   if (!loaded) return fail(loaded.error());
   Document::Data& data = **loaded;
   model.files = data.files;

@@ -18,7 +18,8 @@ struct ReadOptions {
   /// anew has no levels of the old geometry.
   bool levels = true;
   /// Which level of a glTF file's ladder (MSFT_lod) the instances draw: 0 = the original. A node with fewer levels
-  /// draws its coarsest. For looking at it: a model so read is not for writing.
+  /// draws its coarsest. With `levels` the model is for looking at, not for writing; without them its document is as
+  /// well that of this level alone.
   std::size_t draw_level = 0;
 };
 

@@ -12,6 +12,7 @@ from atomic_test import Atomic, Interrupt  # noqa: F401
 from batch_test import Batch, Names  # noqa: F401
 from control_test import Control  # noqa: F401
 from help_test import Help, Shells  # noqa: F401
+from ladder_levels_test import LadderLevels  # noqa: F401
 from readback_test import Readback  # noqa: F401
 from render_test import Render, Sheet  # noqa: F401
 from report_test import Report  # noqa: F401
