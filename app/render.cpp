@@ -99,9 +99,12 @@ Result<ExitCode> run_render(const Arguments& arguments, Console& console) {
   Stopwatch watch;
   const Result<VolumeRequest> volume = volume_request(arguments);
   if (!volume) return fail(volume.error());
-  const Result<Model> model = read_drawn_level(request.input, request.level, report.warnings, console,
-                                               console.task().part(0.5, "reading"), *volume);
+  const Result<LengthRules> lengths = length_rules(arguments);
+  if (!lengths) return fail(lengths.error());
+  Result<Model> model = read_drawn_level(request.input, request.level, report.warnings, console,
+                                         console.task().part(0.5, "reading"), *volume);
   if (!model) return fail(model.error());
+  apply_unit(*model, *lengths);
   if (const Result<void> kept = check_picture_kept(*model, request.output); !kept) return fail(kept.error());
   report.read_seconds = watch.lap();
 

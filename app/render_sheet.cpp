@@ -22,6 +22,8 @@ struct Request {
   std::string output;
   std::optional<render::Shading> shading;
   report::SheetOptions options;
+  LengthRules lengths;
+  VolumeRequest volume;
 };
 
 // Options that say how one picture is taken, where a sheet takes many.
@@ -59,6 +61,13 @@ Result<Request> request_of(const Arguments& arguments) {
   request.options.lens = camera->lens;
   request.options.up = camera->up;
   request.options.view = *view;
+  const Result<LengthRules> lengths = length_rules(arguments);
+  if (!lengths) return fail(lengths.error());
+  request.lengths = *lengths;
+  Result<VolumeRequest> volume = volume_request(arguments);
+  if (!volume) return fail(volume.error());
+  request.volume = std::move(*volume);
+  request.volume.asked = false;  // of several files each is what its name says
   request.options.pixels = *pixels;
   return request;
 }
@@ -100,8 +109,10 @@ Result<std::vector<report::SheetLevel>> read_levels(const std::vector<Source>& s
   const Task all = console.task().part(0.8);
   for (const Source& source : sources) {
     const Task task = all.part(1.0 / static_cast<double>(sources.size()), fmt::format("level {}", levels.size()));
-    const Result<Model> model = read_drawn_level(source.file, source.level, report.warnings, console, task.part(0.3));
+    Result<Model> model =
+        read_drawn_level(source.file, source.level, report.warnings, console, task.part(0.3), request.volume);
     if (!model) return fail(model.error());
+    apply_unit(*model, request.lengths);
     if (const Result<void> kept = check_picture_kept(*model, request.output); !kept) return fail(kept.error());
     double error = 0;
     if (!reference) {

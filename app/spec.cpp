@@ -76,18 +76,18 @@ VerbSpec measure_spec() {
 }
 
 VerbSpec render_spec() {
-  return {
-      "render",
-      "Draws a picture of a model without a display: shaded, textured, as wires, numbers as colours.",
-      {"INPUT...", 1, kAnyNumber, {}, Completion::file},
-      {camera_group(), look_group(), sheet_group(), volume_group(), scan_group(true), picture_group(), general_group()},
-      {{"lod render statue.ply -o statue.png", "from the front and a little above, in grey"},
-       {"lod render statue.glb --level 1 --wireframe --view iso -o level1.png", "a ladder's level with its edges"},
-       {"lod render statue.glb --sheet -o sheet.webp", "all levels of a ladder in one picture, with their errors"}},
-      "Views are named by where the eye is, for someone who stands before the model: front is +z with y up, right "
-      "is +x. Faces seen from behind are drawn in a dull blue unless their material is double-sided. A numbers' "
-      "attribute (--shading heat --attribute NAME) is drawn with a legend.",
-      run_render};
+  return {"render",
+          "Draws a picture of a model without a display: shaded, textured, as wires, numbers as colours.",
+          {"INPUT...", 1, kAnyNumber, {}, Completion::file},
+          {camera_group(), look_group(), sheet_group(), unit_group(), volume_group(), scan_group(true), picture_group(),
+           general_group()},
+          {{"lod render statue.ply -o statue.png", "from the front and a little above, in grey"},
+           {"lod render statue.glb --level 1 --wireframe --view iso -o level1.png", "a ladder's level with its edges"},
+           {"lod render statue.glb --sheet -o sheet.webp", "all levels of a ladder in one picture, with their errors"}},
+          "Views are named by where the eye is, for someone who stands before the model: front is +z with y up, right "
+          "is +x. Faces seen from behind are drawn in a dull blue unless their material is double-sided. A numbers' "
+          "attribute (--shading heat --attribute NAME) is drawn with a legend.",
+          run_render};
 }
 
 VerbSpec remesh_spec() {

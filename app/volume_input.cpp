@@ -270,6 +270,7 @@ Result<VolumeRequest> volume_request(const Arguments& arguments) {
   if (arguments.has("--close")) {
     const Result<LengthRules> lengths = length_rules(arguments);
     if (!lengths) return fail(lengths.error());
+    request.lengths = *lengths;
     Result<std::vector<LengthArgument>> close = length_list(arguments, "--close", *lengths);
     if (!close) return fail(close.error());
     if (close->size() != 1) return bad_value("--close", arguments.text("--close"), "use one radius, such as 1%");
@@ -299,6 +300,7 @@ Result<Model> read_scan_model(const fs::path& path, const VolumeRequest& request
   if (!request.close.empty()) {
     Model unit;
     unit.meters_per_unit = cloud->meters_per_unit;
+    apply_unit(unit, request.lengths);
     const Result<std::vector<double>> radius = to_model_units(request.close, unit, bounds_of(*cloud).diagonal());
     if (!radius) return fail(radius.error());
     options.close_radius = radius->front();

@@ -25,6 +25,7 @@ struct VolumeRequest {
   chain::VolumeSurfaceOptions surface;
   chain::ScanSurfaceOptions scan;
   std::vector<LengthArgument> close;  ///< --close for a scan; empty = by the scan
+  LengthRules lengths;                ///< --unit: what a scan's numbers are
   bool asked = false;                 ///< by --iso, --labels or --raw: whatever the input is called, it is a volume
 };
 

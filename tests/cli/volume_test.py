@@ -91,4 +91,12 @@ class Volumes(Scratch):
         self.assertTrue(any("4,000 points" in w for w in shape["warnings"]), shape["warnings"])
         self.json("build", "ball.ply", "-o", "ball.glb", "--levels", "2", "--scan-resolution", "40")
         self.json("info", "ball.ply", "--splat")
+        # A unit for what has none: as docs/volumes.md has it.
+        for words in (("remesh", "-o", "c.ply", "--resolution", "20"), ("build", "-o", "c.glb", "--levels", "2"),
+                      ("simplify", "-o", "c.glb", "--ratio", "10%"), ("voxelize", "-o", "c.ply", "--resolution", "12"),
+                      ("convert", "-o", "c.glb"), ("info",), ("render", "-o", "c.png", "--size", "64x48")):
+            with self.subTest(words):
+                close = ("--close", "2cm", "--scan-resolution", "32")
+                self.assert_error(self.lod(words[0], "ball.ply", *words[1:], *close, code=2), "2cm", "--unit")
+                self.lod(words[0], "ball.ply", *words[1:], *close, "--unit", "dm")
         self.assert_error(self.lod("build", "ball.ply", "-o", "c.glb", "--close", "x", code=2), "--close")
