@@ -122,6 +122,7 @@ Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& 
   const Result<std::vector<double>> errors = to_model_units(plan.errors, model, diagonal);
   if (!errors) return fail(errors.error());
   options.errors = *errors;
+  doubt_lengths("--error", plan.errors, model, warnings);
   const Result<std::vector<double>> distances = to_model_units(plan.distances, model, diagonal);
   if (!distances) return fail(distances.error());
   for (const double distance : *distances) {

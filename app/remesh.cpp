@@ -13,8 +13,8 @@ namespace lodestone::app {
 namespace {
 
 // The target, for a model whose size is known.
-Result<chain::RemeshOptions> remesh_options(const Arguments& arguments, const LengthRules& lengths,
-                                            const Model& model) {
+Result<chain::RemeshOptions> remesh_options(const Arguments& arguments, const LengthRules& lengths, const Model& model,
+                                            std::vector<std::string>& warnings) {
   chain::RemeshOptions options;
   const Result<std::string> target = given_target(arguments, {"--triangles", "--error"}, "choose one");
   if (!target) return fail(target.error());
@@ -40,6 +40,7 @@ Result<chain::RemeshOptions> remesh_options(const Arguments& arguments, const Le
     const Result<std::vector<double>> units = to_model_units(*error, model, bounds_of(model).diagonal());
     if (!units) return fail(units.error());
     options.error = units->front();
+    doubt_lengths("--error", *error, model, warnings);
   }
   const Result<chain::VoxelOptions> voxel = voxel_options(arguments, lengths, model);
   if (!voxel) return fail(voxel.error());
@@ -66,8 +67,10 @@ Result<ExitCode> run_remesh(const Arguments& arguments, Console& console) {
   apply_unit(*model, *lengths);
   report.unit = unit_name(model->meters_per_unit);
   report.read_seconds = watch.lap();
-  const Result<chain::RemeshOptions> options = remesh_options(arguments, *lengths, *model);
+  std::vector<std::string> warnings;
+  const Result<chain::RemeshOptions> options = remesh_options(arguments, *lengths, *model, warnings);
   if (!options) return fail(options.error());
+  tell(report, warnings, console);
   Result<chain::RemeshResult> result = chain::remesh(*model, *options, console.task().part(0.8, "remeshing"));
   if (!result) return fail(with_place(result.error(), report.input));
   add_solid(report, result->fill, result->resolution, result->voxels_inside);

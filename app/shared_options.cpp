@@ -344,6 +344,19 @@ Result<std::vector<double>> to_model_units(const std::vector<LengthArgument>& le
   return values;
 }
 
+void doubt_lengths(std::string_view option, const std::vector<LengthArgument>& lengths, const Model& model,
+                   std::vector<std::string>& warnings) {
+  constexpr double kMuch = 0.1;
+  std::string unit = unit_name(model.meters_per_unit);
+  if (unit.empty() || unit.find(' ') != std::string::npos) unit = "mm";
+  for (const LengthArgument& length : lengths) {
+    const bool bare = length.kind == LengthArgument::Kind::relative && length.text.back() != '%';
+    if (!bare || length.value <= kMuch) continue;
+    warnings.push_back(fmt::format("{0} {1} allows {2} of the diagonal; write {1}% for a share, or {1}{3} for a length",
+                                   option, length.text, percent(length.value), unit));
+  }
+}
+
 Result<std::vector<double>> ratio_list(const Arguments& arguments, std::string_view option) {
   std::vector<double> ratios;
   for (const std::string& word : split_commas(arguments.text(option))) {

@@ -64,6 +64,10 @@ Result<std::vector<LengthArgument>> length_list(const Arguments& arguments, std:
 Result<std::vector<double>> to_model_units(const std::vector<LengthArgument>& lengths, const Model& model,
                                            double diagonal);
 
+/// Warns of bare numbers that mean more than a tenth of the diagonal, which is mostly a slip: 1 for 1% or 1mm.
+void doubt_lengths(std::string_view option, const std::vector<LengthArgument>& lengths, const Model& model,
+                   std::vector<std::string>& warnings);
+
 /// "10%" and "0.1" are both a tenth. Each in (0, 1).
 Result<std::vector<double>> ratio_list(const Arguments& arguments, std::string_view option);
 

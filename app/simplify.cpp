@@ -90,6 +90,7 @@ Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const 
     const Result<std::vector<double>> errors = to_model_units(plan.error, model, diagonal);
     if (!errors) return fail(errors.error());
     options.max_error = errors->front();
+    doubt_lengths("--error", plan.error, model, warnings);
     console.detail(fmt::format("--error {} is {} in model units (diagonal {})", plan.error[0].text,
                                short_number(options.max_error), short_number(diagonal)));
   }

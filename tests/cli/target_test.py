@@ -71,6 +71,28 @@ class Lengths(Scratch):
         self.assert_error(done, "3mm", "--unit")
         self.assertNotIn("y.glb", self.files())
 
+    def test_a_bare_number_that_means_much_is_doubted(self):
+        for words in (("simplify", "statue.ply", "-o", "x.glb", "--samples", "5000"),
+                      ("build", "statue.ply", "-o", "x.glb", "--samples", "5000"),
+                      ("remesh", "statue.ply", "-o", "x.ply", "--samples", "5000", "--resolution", "16")):
+            words = [*words, "--effort", "fast"] if words[0] != "remesh" else words[:-2]
+            with self.subTest(words):
+                done = self.lod(*words, "--error", "0.5", "--unit", "mm", code=None)
+                self.assertIn("--error 0.5 allows 50 % of the diagonal; write 0.5% for a share, or 0.5mm for a length", done.stderr)
+                for clear in ("50%", "0.05"):
+                    self.assertNotIn("of the diagonal; write", self.lod(*words, "--error", clear, code=None).stderr)
+
+    def test_a_unit_for_every_verb_that_asks_for_one(self):
+        self.lod("convert", "statue.ply", "m.glb")
+        self.lod("convert", "statue.ply", "mm.glb", "--unit", "mm")
+        metres, told = (self.json("info", name)["diagonal"] for name in ("m.glb", "mm.glb"))
+        self.assertAlmostEqual(told, metres / 1000, delta=1e-6 * metres)
+        self.lod("measure", "statue.ply", "m.glb", "--heat", "heat.ply", "--samples", "5000")
+        self.lod("render", "heat.ply", "-o", "bare.png", "--attribute", "_ERROR")
+        self.lod("render", "heat.ply", "-o", "told.png", "--attribute", "_ERROR", "--unit", "cm")
+        bare, told = ((self.folder / name).read_bytes() for name in ("bare.png", "told.png"))
+        self.assertNotEqual(bare, told, "the legend names the unit")
+
     def test_error_lists(self):
         levels = self.json("build", "statue.ply", "-o", "x.glb", "--error", "0.2%,1%", "--samples", "20000")["levels"]
         self.assertEqual(len(levels), 3)
