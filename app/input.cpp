@@ -11,6 +11,7 @@
 #include "app/foreign.h"
 #include "app/json.h"
 #include "app/text.h"
+#include "lodestone/base/file.h"
 #include "lodestone/io/read.h"
 #include "lodestone/io/write.h"
 
@@ -110,8 +111,11 @@ Result<void> check_place(const fs::path& output, const std::vector<fs::path>& in
   if (fs::is_directory(output, ignored)) {
     return fail(ErrorCode::cannot_write, "is a directory", output.string(), "name a file in it");
   }
-  if (::access(folder.c_str(), W_OK) != 0) {
-    return fail(ErrorCode::cannot_write, std::generic_category().message(errno), folder.string(),
+  const Result<fs::path> place = output_place(output);
+  if (!place) return fail(place.error());
+  for (const fs::path& written : {folder, place->has_parent_path() ? place->parent_path() : fs::path(".")}) {
+    if (::access(written.c_str(), W_OK) == 0) continue;
+    return fail(ErrorCode::cannot_write, std::generic_category().message(errno), written.string(),
                 "choose a folder that you may write to");
   }
   return {};

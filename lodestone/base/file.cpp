@@ -36,6 +36,11 @@ tl::unexpected<Error> not_regular(const std::filesystem::path& path) {
   return fail(ErrorCode::cannot_read, "is not a regular file", path.string(), "copy it to a file first");
 }
 
+// What stands for an output until it is whole.
+std::filesystem::path hidden_beside(const std::filesystem::path& place) {
+  return place.parent_path() / fmt::format(".{}.{}.tmp", place.filename().string(), ::getpid());
+}
+
 }  // namespace
 
 Result<InputFile> InputFile::open(const std::filesystem::path& path) {
@@ -118,30 +123,58 @@ Result<std::string> read_file(const std::filesystem::path& path) {
   }
 }
 
-Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
-  const auto cannot = [&](const std::string& why, const std::string& remedy = {}) {
-    return fail(ErrorCode::cannot_write, why, path.string(), remedy);
-  };
-  std::error_code ignored;
-  if (path.filename().empty() || std::filesystem::is_directory(path, ignored)) {
-    return cannot("is a directory", "name a file in it");
+Result<std::filesystem::path> output_place(const std::filesystem::path& path) {
+  namespace fs = std::filesystem;
+  constexpr int kMostLinks = 40;  // as many as Linux follows
+  std::error_code error;
+  fs::path place = path;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(place, error)); ++links) {
+    if (links == kMostLinks) {
+      return fail(ErrorCode::cannot_write, "is a symbolic link that leads in a circle", path.string(), "remove it");
+    }
+    const fs::path target = fs::read_symlink(place, error);
+    if (error) return fail(ErrorCode::cannot_write, error.message(), place.string());
+    place = place.parent_path() / target;
   }
-  std::filesystem::path folder = path.parent_path();
-  if (folder.empty()) folder = ".";
+  const bool linked = place != path;
+  const auto cannot = [&](const std::string& what, const std::string& remedy) {
+    return fail(ErrorCode::cannot_write, linked ? fmt::format("leads to {}, which {}", place.string(), what) : what,
+                path.string(), remedy);
+  };
+  const fs::file_status status = fs::status(place, error);
+  if (place.filename().empty() || fs::is_directory(status)) return cannot("is a directory", "name a file in it");
+  if (!fs::exists(status)) {
+    const fs::path folder = place.parent_path().empty() ? "." : place.parent_path();
+    if (linked && !fs::is_directory(folder, error)) return cannot("is in no existing folder", "make the folder first");
+    return place;
+  }
+  if (!fs::is_regular_file(status)) return cannot("is not a regular file", "choose another name");
+  constexpr fs::perms kWrite = fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
+  if ((status.permissions() & kWrite) == fs::perms::none || ::access(place.c_str(), W_OK) != 0) {
+    return cannot("is write-protected", "choose another name, or allow writing to it (chmod u+w)");
+  }
+  return place;
+}
+
+Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
+  const Result<std::filesystem::path> place = output_place(path);
+  if (!place) return fail(place.error());
+  const std::filesystem::path folder = place->has_parent_path() ? place->parent_path() : ".";
   OutputFile file;
   file.path_ = path;
+  file.place_ = *place;
 #ifdef O_TMPFILE
   file.descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
 #endif
   if (file.descriptor_ < 0) {  // no nameless files here: a hidden one, removed unless committed
-    file.hidden_ = folder / fmt::format(".{}.{}.tmp", path.filename().string(), ::getpid());
+    file.hidden_ = hidden_beside(*place);
     file.descriptor_ = ::open(file.hidden_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   }
   if (file.descriptor_ < 0) {
     const int error_number = errno;
     file.hidden_.clear();
-    return cannot(error_number == ENOENT ? "its folder does not exist" : reason(error_number),
-                  error_number == ENOENT ? "make the folder first" : "");
+    return fail(ErrorCode::cannot_write, error_number == ENOENT ? "its folder does not exist" : reason(error_number),
+                path.string(), error_number == ENOENT ? "make the folder first" : "");
   }
   file.buffer_.reserve(kBufferBytes);
   return file;
@@ -153,6 +186,7 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
   if (this != &other) {
     discard();
     path_ = std::move(other.path_);
+    place_ = std::move(other.place_);
     hidden_ = std::exchange(other.hidden_, {});
     descriptor_ = std::exchange(other.descriptor_, -1);
     error_number_ = other.error_number_;
@@ -197,14 +231,13 @@ Result<void> OutputFile::commit() {
   };
   if (error_number_ != 0) return cannot(error_number_);
   if (hidden_.empty()) {  // give the nameless file a name beside its place, then rename over the old one
-    const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
-    std::filesystem::path name = folder / fmt::format(".{}.{}.tmp", path_.filename().string(), ::getpid());
+    std::filesystem::path name = hidden_beside(place_);
     const std::string self = fmt::format("/proc/self/fd/{}", descriptor_);
     if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) return cannot(errno);
     hidden_ = std::move(name);
   }
   if (::close(std::exchange(descriptor_, -1)) != 0) return cannot(errno);
-  if (::rename(hidden_.c_str(), path_.c_str()) != 0) return cannot(errno);
+  if (::rename(hidden_.c_str(), place_.c_str()) != 0) return cannot(errno);
   hidden_.clear();
   return {};
 }
@@ -212,8 +245,7 @@ Result<void> OutputFile::commit() {
 Result<StagingFolder> StagingFolder::create(const std::filesystem::path& output) {
   StagingFolder staging;
   staging.folder_ = output.parent_path();
-  const std::filesystem::path hidden =
-      staging.folder_ / fmt::format(".{}.{}.tmp", output.filename().string(), ::getpid());
+  const std::filesystem::path hidden = hidden_beside(output);
   std::error_code error;
   if (!std::filesystem::create_directory(hidden, error)) {
     if (error) {
@@ -233,14 +265,43 @@ Result<StagingFolder> StagingFolder::create(const std::filesystem::path& output)
 }
 
 StagingFolder::StagingFolder(StagingFolder&& other) noexcept
-    : folder_(std::move(other.folder_)), hidden_(std::exchange(other.hidden_, {})), keep_hidden_(other.keep_hidden_) {}
+    : folder_(std::move(other.folder_)),
+      hidden_(std::exchange(other.hidden_, {})),
+      elsewhere_(std::exchange(other.elsewhere_, {})),
+      keep_hidden_(other.keep_hidden_) {}
 
 StagingFolder::~StagingFolder() {
+  if (hidden_.empty() || keep_hidden_) return;
   std::error_code ignored;
-  if (!hidden_.empty() && !keep_hidden_) std::filesystem::remove_all(hidden_, ignored);
+  elsewhere_.push_back(hidden_);
+  for (const std::filesystem::path& folder : elsewhere_) std::filesystem::remove_all(folder, ignored);
 }
 
 Result<void> StagingFolder::commit() {
+  Result<std::vector<Move>> moves = plan_moves();
+  if (!moves) return fail(moves.error());
+  for (Move& move : *moves) {
+    if (const Result<void> beside = bring_beside(move); !beside) return beside;
+  }
+  for (std::size_t i = 0; i < moves->size(); ++i) {
+    const Move& move = (*moves)[i];
+    const int error_number = put_in_place(move);
+    if (error_number == 0) continue;
+    for (std::size_t placed = i; placed-- > 0;) {
+      if (!restore((*moves)[placed])) ::unlink((*moves)[placed].place.c_str());
+    }
+    return fail(ErrorCode::cannot_write, reason(error_number), move.place.string(),
+                keep_hidden_ ? "older files are in " + move.aside.parent_path().string() : "nothing was changed");
+  }
+  return {};
+}
+
+// What can be known before anything is moved.
+Result<std::vector<StagingFolder::Move>> StagingFolder::plan_moves() const {
+  const std::filesystem::path folder = folder_.empty() ? "." : folder_;
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    return fail(ErrorCode::cannot_write, reason(errno), folder.string(), "choose a folder that you may write to");
+  }
   std::vector<std::filesystem::path> names;
   std::error_code error;
   for (std::filesystem::directory_iterator entry(path(), error), end; !error && entry != end; entry.increment(error)) {
@@ -248,51 +309,51 @@ Result<void> StagingFolder::commit() {
   }
   if (error) return fail(ErrorCode::cannot_write, error.message(), hidden_.string());
   std::sort(names.begin(), names.end());  // the same order everywhere
-  if (const Result<void> free = check_places(names); !free) return free;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const int error_number = put_in_place(names[i]);
-    if (error_number == 0) continue;
-    for (std::size_t placed = i; placed-- > 0;) {
-      if (!restore(names[placed])) ::unlink(place_of(names[placed]).c_str());
-    }
-    return fail(ErrorCode::cannot_write, reason(error_number), place_of(names[i]).string(),
-                keep_hidden_ ? "older files are in " + (hidden_ / "old").string() : "nothing was changed");
+  std::vector<Move> moves;
+  for (const std::filesystem::path& name : names) {
+    const Result<std::filesystem::path> place = output_place(folder_ / name);
+    if (!place) return fail(place.error());
+    moves.push_back({path() / name, *place, hidden_ / "old" / name});
   }
-  return {};
+  return moves;
 }
 
-// What can be known before anything is moved.
-Result<void> StagingFolder::check_places(const std::vector<std::filesystem::path>& names) const {
-  const std::filesystem::path folder = folder_.empty() ? "." : folder_;
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    return fail(ErrorCode::cannot_write, reason(errno), folder.string(), "choose a folder that you may write to");
+// A link may lead to another file system, where nothing can be renamed to: the new file is brought beside its place.
+Result<void> StagingFolder::bring_beside(Move& move) {
+  if (move.place.parent_path() == folder_) return {};
+  const std::filesystem::path hidden = hidden_beside(move.place);
+  std::error_code error;
+  if (!std::filesystem::create_directory(hidden, error) && !error) {
+    return fail(ErrorCode::cannot_write, fmt::format("{} is in the way", hidden.string()), move.place.string(),
+                "remove it, unless two links lead to the same file");
   }
-  std::error_code ignored;
-  for (const std::filesystem::path& name : names) {
-    if (!std::filesystem::is_directory(place_of(name), ignored)) continue;
-    return fail(ErrorCode::cannot_write, "is a directory", place_of(name).string(),
-                "move it away, or choose another name");
+  if (!error) {
+    elsewhere_.push_back(hidden);
+    std::filesystem::rename(move.fresh, hidden / "new", error);
+    if (error) std::filesystem::copy_file(move.fresh, hidden / "new", error);
   }
+  if (error) return fail(ErrorCode::cannot_write, error.message(), move.place.string(), "nothing was changed");
+  move.fresh = hidden / "new";
+  move.aside = hidden / "old";
   return {};
 }
 
 // Returns 0 or the error number; then the older file, if there is one, is still or again in its place.
-int StagingFolder::put_in_place(const std::filesystem::path& name) {
-  const std::filesystem::path place = place_of(name), old = aside(name);
+int StagingFolder::put_in_place(const Move& move) {
   // A second name for the older file, so that the first leads to a whole file at any time; where the file system has no
   // second names, it is moved.
-  const bool kept = ::link(place.c_str(), old.c_str()) == 0 || errno == ENOENT ||
-                    ::rename(place.c_str(), old.c_str()) == 0 || errno == ENOENT;
+  const bool kept = ::link(move.place.c_str(), move.aside.c_str()) == 0 || errno == ENOENT ||
+                    ::rename(move.place.c_str(), move.aside.c_str()) == 0 || errno == ENOENT;
   if (!kept) return errno;
-  if (::rename((path() / name).c_str(), place.c_str()) == 0) return 0;
+  if (::rename(move.fresh.c_str(), move.place.c_str()) == 0) return 0;
   const int error_number = errno;
-  restore(name);
+  restore(move);
   return error_number;
 }
 
 // Puts the older file back into its place; false if there was none.
-bool StagingFolder::restore(const std::filesystem::path& name) {
-  if (::rename(aside(name).c_str(), place_of(name).c_str()) == 0) return true;
+bool StagingFolder::restore(const Move& move) {
+  if (::rename(move.aside.c_str(), move.place.c_str()) == 0) return true;
   if (errno == ENOENT) return false;
   keep_hidden_ = true;  // better a hidden folder that stays than an older file that is lost
   return true;

@@ -46,11 +46,17 @@ std::string extension_of(const std::filesystem::path& path);
 /// The whole file. Errors: cannot_read.
 Result<std::string> read_file(const std::filesystem::path& path);
 
+/// Where the bytes of an output go: `path`, or, where that is a symbolic link, the end of its links, so that a link
+/// stays one; the file there need not exist yet. Errors: cannot_write (it exists and is write-protected, even from an
+/// administrator, or is no regular file; links in a circle, or into a folder that doesn't exist).
+Result<std::filesystem::path> output_place(const std::filesystem::path& path);
+
 /// An output that appears under its name whole, or not at all: written as a nameless (or, where the file system has
 /// none, a hidden) file in the same folder and renamed by commit(). Without commit() an existing file keeps its bytes.
+/// A symbolic link is followed.
 class OutputFile {
  public:
-  /// Errors: cannot_write (no such folder, a directory in the way, no permission).
+  /// Errors: cannot_write (no such folder, no permission, those of output_place()).
   static Result<OutputFile> create(const std::filesystem::path& path);
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
@@ -72,7 +78,8 @@ class OutputFile {
   void flush();
   void discard() noexcept;
   std::filesystem::path path_;
-  std::filesystem::path hidden_;  // empty while the file has no name
+  std::filesystem::path place_;   // where links of path_ lead
+  std::filesystem::path hidden_;  // beside place_; empty while the file has no name
   int descriptor_ = -1;
   int error_number_ = 0;
   std::uint64_t written_ = 0;
@@ -80,7 +87,7 @@ class OutputFile {
 };
 
 /// A hidden folder beside an output that consists of several files: what is written into it appears beside it on
-/// commit(), and is gone without.
+/// commit(), and is gone without. Symbolic links there are followed.
 class StagingFolder {
  public:
   /// In the folder of `output`. Errors: cannot_write.
@@ -97,14 +104,18 @@ class StagingFolder {
 
  private:
   StagingFolder() = default;
-  std::filesystem::path place_of(const std::filesystem::path& name) const { return folder_ / name; }
-  std::filesystem::path aside(const std::filesystem::path& name) const { return hidden_ / "old" / name; }
-  Result<void> check_places(const std::vector<std::filesystem::path>& names) const;
-  int put_in_place(const std::filesystem::path& name);
-  bool restore(const std::filesystem::path& name);
+  // A file on its way: from `fresh` to `place`, and what was there before to `aside`.
+  struct Move {
+    std::filesystem::path fresh, place, aside;
+  };
+  Result<std::vector<Move>> plan_moves() const;
+  Result<void> bring_beside(Move& move);
+  int put_in_place(const Move& move);
+  bool restore(const Move& move);
 
-  std::filesystem::path folder_;  // of the output; empty = the present one
-  std::filesystem::path hidden_;  // holds "new" and, during commit(), "old"; empty once moved from
+  std::filesystem::path folder_;                  // of the output; empty = the present one
+  std::filesystem::path hidden_;                  // holds "new" and, during commit(), "old"; empty once moved from
+  std::vector<std::filesystem::path> elsewhere_;  // the same beside what links lead to, during commit()
   bool keep_hidden_ = false;
 };
 

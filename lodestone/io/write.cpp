@@ -82,6 +82,7 @@ Result<void> check_target(const Model& input, const fs::path& target, const fs::
   if (fs::is_directory(target, ignored)) {
     return not_replaced(target, "is a directory", "move it away, or choose another output name or folder");
   }
+  if (const Result<fs::path> place = output_place(target); !place) return fail(place.error());
   for (const fs::path& file : input.files) {
     if (!same_file(file, target)) continue;
     return not_replaced(target, fmt::format("belongs to the input, and writing {} would replace it", path.string()),

@@ -82,6 +82,51 @@ TEST_F(File, what_may_never_end_is_refused_at_once) {
   EXPECT_EQ(*read_file(folder_ / "link"), "text");
 }
 
+TEST_F(File, a_write_protected_file_is_refused) {
+  std::ofstream(folder_ / "a.bin") << "old";
+  fs::permissions(folder_ / "a.bin", fs::perms::owner_read);
+  fs::create_symlink("a.bin", folder_ / "link");
+  for (const char* name : {"a.bin", "link"}) {
+    const auto out = OutputFile::create(folder_ / name);
+    ASSERT_FALSE(out) << name;
+    EXPECT_EQ(out.error().code, ErrorCode::cannot_write);
+    EXPECT_NE(out.error().line().find("is write-protected"), std::string::npos) << out.error().line();
+  }
+  EXPECT_EQ(*read_file(folder_ / "a.bin"), "old");
+  EXPECT_EQ(entries(), 2U);
+}
+
+TEST_F(File, a_symbolic_link_stays_and_its_target_gets_the_bytes) {
+  fs::create_directories(folder_ / "far");
+  std::ofstream(folder_ / "far" / "a.bin") << "old";
+  fs::create_symlink("far/a.bin", folder_ / "there");
+  fs::create_symlink("there", folder_ / "twice");
+  fs::create_symlink("far/b.bin", folder_ / "dangling");
+  for (const char* name : {"twice", "dangling"}) {
+    auto out = OutputFile::create(folder_ / name);
+    ASSERT_TRUE(out) << out.error().line();
+    out->write("new");
+    ASSERT_TRUE(out->commit());
+    EXPECT_TRUE(fs::is_symlink(folder_ / name)) << name;
+  }
+  EXPECT_TRUE(fs::is_symlink(folder_ / "there"));
+  for (const char* name : {"a.bin", "b.bin"}) EXPECT_EQ(*read_file(folder_ / "far" / name), "new");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "far"), fs::directory_iterator()), 2);
+}
+
+TEST_F(File, links_that_lead_to_no_file_are_refused) {
+  fs::create_symlink("no/a.bin", folder_ / "nowhere");
+  fs::create_symlink("circle", folder_ / "circle");
+  fs::create_symlink("/dev/null", folder_ / "null");
+  const std::pair<const char*, const char*> cases[] = {
+      {"nowhere", "no/a.bin, which is in no existing folder"}, {"circle", "circle"}, {"null", "not a regular file"}};
+  for (const auto& [name, part] : cases) {
+    const auto out = OutputFile::create(folder_ / name);
+    ASSERT_FALSE(out) << name;
+    EXPECT_NE(out.error().line().find(part), std::string::npos) << out.error().line();
+  }
+}
+
 class Staging : public File {
  protected:
   void SetUp() override {
@@ -144,6 +189,38 @@ TEST_F(Staging, a_failure_on_the_way_puts_everything_back) {
   expect_old_files();
   EXPECT_EQ(*read_file(folder_ / "d"), "old d");
   EXPECT_EQ(entries(), 3U);
+}
+
+TEST_F(Staging, links_stay_and_lead_to_the_new_bytes) {
+  const fs::path far = folder_ / "far";
+  fs::create_directories(far);
+  put(far / "b", "old b");
+  fs::create_symlink("far/b", folder_ / "b");
+  fs::create_symlink("far/d", folder_ / "d");
+  {
+    StagingFolder staging = staged();
+    ASSERT_TRUE(staging.commit());
+  }
+  for (const char* name : {"a", "b", "c", "d"}) EXPECT_EQ(*read_file(folder_ / name), std::string("new ") + name);
+  for (const char* name : {"b", "d"}) EXPECT_TRUE(fs::is_symlink(folder_ / name));
+  EXPECT_EQ(std::distance(fs::directory_iterator(far), fs::directory_iterator()), 2);
+  EXPECT_EQ(entries(), 5U);
+}
+
+TEST_F(Staging, one_write_protected_file_changes_none) {
+  fs::create_symlink("far", folder_ / "b");
+  put(folder_ / "far", "old far");
+  put(folder_ / "d", "old d");
+  fs::permissions(folder_ / "d", fs::perms::owner_read);
+  {
+    StagingFolder staging = staged();
+    const auto done = staging.commit();
+    ASSERT_FALSE(done);
+    EXPECT_NE(done.error().line().find("d: is write-protected"), std::string::npos);
+  }
+  EXPECT_EQ(*read_file(folder_ / "a"), "old a");
+  EXPECT_EQ(*read_file(folder_ / "far"), "old far");
+  EXPECT_EQ(entries(), 5U);
 }
 
 TEST_F(Staging, what_a_killed_run_left_is_named) {

@@ -56,6 +56,42 @@ class Atomic(Scratch):
         for level in range(5):
             self.assertTrue((self.folder / "d" / f"sp_LOD{level}.ply").read_bytes().startswith(b"ply"))
 
+    def test_write_protected_files_stay(self):
+        for name in ("x.glb", "x.obj", "x_LOD1.obj", "x.png", "x.html"):
+            (self.folder / name).write_text("precious")
+            (self.folder / name).chmod(0o444)
+        self.lod("build", "statue.ply", "-o", "y.glb", "--levels", "2", "--samples", "1000")
+        for words in (("convert", "statue.ply", "x.glb"), ("convert", "statue.ply", "-o", "x.obj"),
+                      ("build", "statue.ply", "-o", "x_LOD{level}.obj", "--levels", "3", "--samples", "1000"),
+                      ("convert", "y.glb", "-o", "x_LOD{level}.obj"), ("render", "statue.ply", "-o", "x.png"),
+                      ("build", "statue.ply", "-o", "z.glb", "--levels", "2", "--report", "x.html"),
+                      ("sample", "sphere", "-o", "x.glb")):
+            with self.subTest(words):
+                self.assert_error(self.lod(*words, code=1), "is write-protected", "chmod")
+        for name in ("x.glb", "x.obj", "x_LOD1.obj", "x.png", "x.html"):
+            self.assertEqual((self.folder / name).read_text(), "precious")
+        self.assertEqual(self.files(), ["statue.ply", "x.glb", "x.html", "x.obj", "x.png", "x_LOD1.obj", "y.glb"])
+
+    def test_symbolic_links_are_followed(self):
+        (self.folder / "far").mkdir()
+        for kind in ("glb", "obj", "gltf"):
+            with self.subTest(kind):
+                link, target = self.folder / f"link.{kind}", self.folder / "far" / f"real.{kind}"
+                target.write_text("old")
+                link.symlink_to(f"far/real.{kind}")
+                self.lod("convert", "statue.ply", link)
+                self.assertTrue(link.is_symlink())
+                self.lod("convert", "statue.ply", f"plain.{kind}")
+                if kind != "gltf":  # which names its .bin
+                    self.assertEqual(target.read_bytes(), (self.folder / f"plain.{kind}").read_bytes())
+                self.assertEqual(self.json("info", link)["triangles"], self.statue_triangles)
+        (self.folder / "new.ply").symlink_to("far/new.ply")
+        self.lod("convert", "statue.ply", "new.ply")
+        self.assertTrue((self.folder / "far" / "new.ply").is_file() and (self.folder / "new.ply").is_symlink())
+        self.assertEqual(self.files("far"), ["new.ply", "real.glb", "real.gltf", "real.obj"])
+        (self.folder / "lost.ply").symlink_to("nowhere/new.ply")
+        self.assert_error(self.lod("convert", "statue.ply", "lost.ply", code=1), "lost.ply", "nowhere/new.ply", "folder")
+
     def test_inputs_are_never_overwritten(self):
         before = (self.folder / "statue.ply").read_bytes()
         self.lod("convert", "statue.ply", "./statue.ply", code=2)
