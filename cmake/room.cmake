@@ -2,7 +2,8 @@
 
 add_library(lodestone_options INTERFACE)
 target_compile_options(lodestone_options INTERFACE
-  -Wall -Wextra -Wshadow -Wconversion
+  -Wall -Wextra -Wconversion
+  $<$<NOT:$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wshadow>  # of files that are joined, private names hide each other
   $<$<BOOL:${LODESTONE_WERROR}>:-Werror>
   # g++ 12 sees overlaps in std::string that are not there (GCC bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
@@ -10,9 +11,24 @@ target_compile_options(lodestone_options INTERFACE
   -ffp-contract=off)
 target_include_directories(lodestone_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
 
-# lodestone_room(name DEPENDS room... [LIBRARIES target...]): target lodestone_<name> from lodestone/<name>/*.cpp.
+# Where LODESTONE_PCH is on, what nearly every file includes is parsed once a target. Files still include what they use:
+# the preset `clang` builds without.
+function(lodestone_precompile target)
+  if(NOT LODESTONE_PCH)
+    return()
+  endif()
+  target_precompile_headers(${target} PRIVATE
+    <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <span> <string> <string_view>
+    <utility> <variant> <vector> ${ARGN})
+  # For ccache, which must see that a precompiled header is used.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+endfunction()
+
+# lodestone_room(name DEPENDS room... [LIBRARIES target...] [ALONE file...]): target lodestone_<name> from
+# lodestone/<name>/*.cpp. ALONE: files with private names that another has too; where a preset joins files to compile them
+# faster (CMAKE_UNITY_BUILD) these are left by themselves.
 function(lodestone_room name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;LIBRARIES;DEFINITIONS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPENDS;LIBRARIES;DEFINITIONS;ALONE" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
   list(FILTER headers EXCLUDE REGEX "_detail\\.h$")
@@ -22,6 +38,10 @@ function(lodestone_room name)
     set(scope PUBLIC)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:lodestone_options> ${ARG_LIBRARIES})
     target_compile_definitions(${target} PRIVATE ${ARG_DEFINITIONS})
+    set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    if("fmt::fmt" IN_LIST ARG_LIBRARIES)
+      lodestone_precompile(${target} <fmt/format.h> <tl/expected.hpp>)
+    endif()
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
@@ -41,9 +61,10 @@ function(lodestone_room name)
   set_property(GLOBAL APPEND PROPERTY LODESTONE_ROOMS ${name})
 endfunction()
 
-# lodestone_tests(room [LIBRARIES target...]): executable <room>_tests from tests/<room>/*_test.cpp, label "unit".
+# lodestone_tests(room [LIBRARIES target...] [ALONE file...] [THREADS]): executable <room>_tests from
+# tests/<room>/*_test.cpp, label "unit"; with THREADS the thread sanitizer looks at them, too. ALONE: as above.
 function(lodestone_tests room)
-  cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "THREADS" "" "LIBRARIES;ALONE" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${room}/*.cpp)
   if(NOT sources)
     return()
@@ -51,6 +72,14 @@ function(lodestone_tests room)
   add_executable(${room}_tests ${sources})
   target_link_libraries(${room}_tests PRIVATE lodestone_options lodestone_${room} lodestone_test_support GTest::gtest
                         ${ARG_LIBRARIES})
+  list(TRANSFORM ARG_ALONE PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/${room}/)
+  set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  lodestone_precompile(${room}_tests <gtest/gtest.h> <tl/expected.hpp>)
   add_dependencies(unit_tests ${room}_tests)
-  gtest_discover_tests(${room}_tests TEST_PREFIX "${room}." PROPERTIES LABELS unit DISCOVERY_TIMEOUT 60)
+  set(labels unit)
+  if(ARG_THREADS)
+    list(APPEND labels threads)
+    add_dependencies(thread_tests ${room}_tests)
+  endif()
+  gtest_discover_tests(${room}_tests TEST_PREFIX "${room}." PROPERTIES LABELS "${labels}" DISCOVERY_TIMEOUT 60)
 endfunction()

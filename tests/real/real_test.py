@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """The command on every shared model, judged by tools that share no code with it.
 
-    real_test.py ladders|broken|formats|gltf|three|volumes --lod LOD --meshjudge JUDGE --data DIR --npm DIR
+    real_test.py ladders|readback|broken|formats|gltf|three|volumes[/I/N] --lod LOD --meshjudge JUDGE --data DIR --npm DIR
+
+/I/N: of N shares of the models the I-th.
 
 Exit status: 0 all well, 1 with a line for each thing that isn't, 77 when something it needs is missing.
 """
@@ -13,6 +15,7 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+LARGE_BYTES = 1_200_000
 MODELS = {".ply", ".obj", ".stl", ".off", ".glb", ".gltf"}
 
 
@@ -24,6 +27,7 @@ class Judge:
         self.scratch = Path(tempfile.mkdtemp(prefix="lodestone-real-"))
         self.complaints = []
         self.checked = 0
+        self.share, self.shares = 1, 1
 
     def complain(self, text):
         self.complaints.append(text)
@@ -38,10 +42,10 @@ class Judge:
         return json.loads(run.stdout)
 
     def models(self, *folders):
-        for folder in folders:
-            for path in sorted((self.args.data / folder).rglob("*")):
-                if path.suffix.lower() in MODELS and path.is_file():
-                    yield path
+        """This share of the models in folders, by turns, so that large and small ones are spread."""
+        paths = [path for folder in folders for path in sorted((self.args.data / folder).rglob("*"))
+                 if path.suffix.lower() in MODELS and path.is_file()]
+        yield from paths[self.share - 1::self.shares]
 
     def build(self, path, *options):
         """The ladder of a model and its JSON, or None after a complaint."""
@@ -60,7 +64,8 @@ class Judge:
 def ladders(t):
     """Levels are what the JSON says, their errors are the referee's, closed manifold stays so."""
     for path in t.models("meshes", "textured"):
-        out, report = t.build(path)
+        # Large ones without shaping, which the others have: it takes most of the time.
+        out, report = t.build(path, *(["--effort", "fast"] if path.stat().st_size > LARGE_BYTES else []))
         if out is None:
             continue
         errors = [level["error"] for level in report["levels"]]
@@ -93,6 +98,29 @@ def compare_errors(t, path, out, level):
         t.complain(f"{path.name} level {k}: mean {level['mean_error']:.6g}, the referee {d['mean']:.6g}")
     if level["error"] < 0.97 * d["max"] - floor:
         t.complain(f"{path.name} level {k}: error {level['error']:.6g}, the referee found {d['max']:.6g}")
+
+
+def readback(t):
+    """Ladders by other ways: what was told is in the file, as the referee reads it."""
+    ways = (["--effort", "best"], ["--method", "voxel"], ["--method", "voxel", "--then-collapse"])
+    names = ("meshes/bunny_7k.off", "meshes/fandisk.obj", "meshes/teapot.obj", "textured/DamagedHelmet.glb",
+             "textured/Duck.glb", "textured/CesiumMan.glb")
+    for name in names[t.share - 1::t.shares]:
+        for way in ways:
+            out, report = t.build(t.args.data / name, "--ratio", "20%,4%", *way)
+            for level in report["levels"][1:] if report else []:
+                d = t.judge("distance", out, out, "--level-a", 0, "--level-b", level["level"], "--samples", 100000)
+                floor = 2e-6 * d["diagonal"]
+                if not 0.97 * d["max"] - floor <= level["error"] <= 3 * d["max"] + floor:
+                    t.complain(f"{name} {' '.join(way)} level {level['level']}: says {level['error']:.6g}, "
+                               f"the file measures {d['max']:.6g}")
+    for name in ("textured/Fox/Fox.gltf", "meshes/cow.obj"):  # and as we read it back ourselves, in every format
+        for output in ("o.gltf", "o{level}.ply", "o{level}.obj", "o{level}.stl"):
+            folder = Path(tempfile.mkdtemp(dir=t.scratch))
+            run = t.lod("build", t.args.data / name, "-o", folder / output, "--verify", "--ratio", "30%,10%")
+            t.checked += 1
+            if run.returncode not in (0, 3):
+                t.complain(f"{name} to {output}: {run.stderr.strip()[-200:]}")
 
 
 def broken(t):
@@ -222,13 +250,19 @@ def volumes(t):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("part", choices=["ladders", "broken", "formats", "gltf", "three", "volumes"])
+    parser.add_argument("part")
     for name in ("--lod", "--meshjudge"):
         parser.add_argument(name, required=True)
     for name in ("--data", "--npm"):
         parser.add_argument(name, type=lambda text: Path(text).resolve(), required=True)
+    parts = {f.__name__: f for f in (ladders, readback, broken, formats, gltf, three, volumes)}
     t = Judge(parser.parse_args())
-    globals()[t.args.part](t)
+    name, *share = t.args.part.split("/")
+    if name not in parts:
+        parser.error(f"no part '{name}'; there are: {' '.join(parts)}")
+    if share:
+        t.share, t.shares = map(int, share)
+    parts[name](t)
     for complaint in t.complaints:
         print(complaint)
     print(f"{t.args.part}: {t.checked} runs, {len(t.complaints)} complaints")

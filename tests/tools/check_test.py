@@ -35,7 +35,7 @@ class Check(unittest.TestCase):
         done, log = self.run_check("format", "floors", "fuzz")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(log.split("\n")[:2], ["tools/format ", "tools/check_floors "])
-        self.assertIn("tools/fuzz 30", log)
+        self.assertIn("tools/fuzz 20", log)
         self.assertIn("all passed", done.stdout)
 
     def test_one_failing_step_fails_all_and_is_named(self):
