@@ -12,6 +12,7 @@
 #include "lodestone/base/text.h"
 #include "lodestone/core/validate.h"
 #include "lodestone/io/assimp.h"
+#include "lodestone/io/content.h"
 #include "lodestone/io/draco.h"
 #include "lodestone/io/gltf_read.h"
 #include "lodestone/io/obj.h"
@@ -83,6 +84,8 @@ Result<Model> read_by(const Format* format, const std::filesystem::path& path, c
   }
 }
 
+Result<Model> read_named(const std::filesystem::path& path, const ReadOptions& options, const Task& task);
+
 }  // namespace
 
 bool is_model_extension(std::string_view extension) {
@@ -104,6 +107,15 @@ std::vector<std::string> readable_extensions() {
 }
 
 Result<Model> read_model(const std::filesystem::path& path, const ReadOptions& options, Task task) {
+  Result<Model> model = read_named(path, options, task);
+  if (!model) return fail(told_by_content(model.error(), path));
+  return model;
+}
+
+namespace {
+
+// By the reader that the name asks for.
+Result<Model> read_named(const std::filesystem::path& path, const ReadOptions& options, const Task& task) {
   const std::string extension = extension_of(path);
   std::array<char, 8> head{};
   std::size_t head_size = 0;
@@ -138,5 +150,7 @@ Result<Model> read_model(const std::filesystem::path& path, const ReadOptions& o
   }
   return model;
 }
+
+}  // namespace
 
 }  // namespace lodestone::io
