@@ -14,9 +14,16 @@ struct Task::Root {
   double done = 0;  // guarded by mutex
 
   void add(double share, const std::string& label) {
-    if (!callback || share <= 0) return;
+    if (!callback || share <= 0 || cancelled.load(std::memory_order_relaxed)) return;  // what is dropped is not done
     const std::lock_guard lock(mutex);
     done = std::min(1.0, done + share);
+    callback(done, label);
+  }
+
+  // What begins, before any of it is done.
+  void tell(const std::string& label) {
+    if (!callback || label.empty()) return;
+    const std::lock_guard lock(mutex);
     callback(done, label);
   }
 };
@@ -58,6 +65,7 @@ Task Task::part(double share, std::string label) const {
   task.span_ = std::make_shared<Span>();
   task.span_->root = root_;
   task.span_->size = span_->take(share) * span_->size;
+  root_->tell(label);
   task.span_->label = label.empty() ? span_->label : std::move(label);
   return task;
 }

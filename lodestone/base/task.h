@@ -24,7 +24,7 @@ class Task {
   /// A root task. `threads` 0 means all that the process may use.
   static Task root(ProgressCallback callback, int threads = 0);
 
-  /// A share (0 to 1) of this task's span, for a callee. An empty label keeps this task's.
+  /// A share (0 to 1) of this task's span, for a callee. A label is reported at once; an empty one keeps this task's.
   Task part(double share, std::string label = {}) const;
 
   /// Claims a share (0 to 1) of this task's span as done. Any thread.

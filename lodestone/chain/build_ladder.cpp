@@ -239,25 +239,38 @@ Result<void> detail::compare_pictures(LadderResult& result, const measure::Image
   return {};
 }
 
+namespace {
+
+// What collapsing and making ready to measure take of the whole, roughly: shaping levels takes far longer than both.
+struct Shares {
+  double collapsing, preparing;
+};
+
+Shares shares_of(Effort effort) { return effort == Effort::fast ? Shares{0.4, 0.05} : Shares{0.06, 0.02}; }
+
+}  // namespace
+
 Result<LadderResult> build_ladder(Model original, const LadderOptions& options, Task task) {
   if (const Result<void> ok = detail::check_ladder(original, options); !ok) return fail(ok.error());
   const std::vector<std::size_t> targets = detail::count_targets(options, drawn_triangles(original));
   const std::size_t smallest = options.errors.empty() ? targets.back() : 1;
 
+  const Shares shares = shares_of(options.effort);
   LadderResult result;
   result.ladder.original = std::move(original);
   const Model& model = result.ladder.original;
   const Stopwatch collapsing;
   const Result<CollapsePlan> plan = CollapsePlan::create(options.start ? *options.start : model, smallest,
-                                                         options.influence, task.part(0.4, "collapsing"));
+                                                         options.influence, task.part(shares.collapsing, "collapsing"));
   if (!plan) return fail(plan.error());
   result.simplify_seconds = collapsing.total();
   const Stopwatch preparing;
-  const Result<Reference> reference = Reference::create(model, task.part(0.05, "preparing to measure"));
+  const Result<Reference> reference = Reference::create(model, task.part(shares.preparing, "preparing to measure"));
   if (!reference) return fail(reference.error());
   result.measure_seconds = preparing.total();
   result.ladder.levels.push_back(detail::original_level(model, reference->diagonal()));
-  const Task measuring = task.part(options.image ? 0.4 : 0.55, "measuring");
+  const double left = 1 - shares.collapsing - shares.preparing;
+  const Task measuring = task.part(options.image ? left - 0.15 : left, "measuring");
   LevelMaker maker(*plan, *reference, options.distance, options.effort);
   const Result<void> added = options.errors.empty() ? add_count_levels(result, maker, targets, options, measuring)
                                                     : add_error_levels(result, maker, options, measuring);
@@ -277,17 +290,18 @@ Result<SimplifyModelResult> simplify_model(const Model& original, const Simplify
                "give a triangle count, a ratio or an error");
   }
   if (const Result<void> ok = check_drawn(original); !ok) return fail(ok.error());
+  const Shares shares = shares_of(options.effort);
   const Stopwatch collapsing;
   const Result<CollapsePlan> plan = CollapsePlan::create(original, by_count ? options.target_triangles : 1,
-                                                         options.influence, task.part(0.5, "collapsing"));
+                                                         options.influence, task.part(shares.collapsing, "collapsing"));
   if (!plan) return fail(plan.error());
   SimplifyModelResult result;
   result.simplify_seconds = collapsing.total();
   const Stopwatch preparing;
-  const Result<Reference> reference = Reference::create(original, task.part(0.1, "preparing to measure"));
+  const Result<Reference> reference = Reference::create(original, task.part(shares.preparing, "preparing to measure"));
   if (!reference) return fail(reference.error());
   result.measure_seconds = preparing.total();
-  const Task rest = task.part(0.4, "measuring");
+  const Task rest = task.part(1 - shares.collapsing - shares.preparing, "measuring");
   LevelMaker maker(*plan, *reference, options.distance, options.effort);
   Starts starts;
   Result<Cut> cut = by_count ? maker.shaped(plan->prefix_for(options.target_triangles), rest)

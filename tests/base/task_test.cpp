@@ -48,11 +48,34 @@ TEST(Task, cancelling_reaches_every_handle) {
   EXPECT_TRUE(root.cancelled());
 }
 
+TEST(Task, what_is_dropped_when_cancelled_does_not_count_as_done) {
+  double last = 0;
+  const Task root = Task::root([&](double done, const std::string&) { last = done; });
+  {
+    const Task part = root.part(0.5, "reading");
+    part.advance(0.5);
+    root.cancel();
+  }
+  EXPECT_EQ(last, 0.25);
+}
+
 TEST(Task, labels_are_inherited) {
   std::string label;
   const Task root = Task::root([&](double, const std::string& l) { label = l; });
   root.part(0.5, "reading").part(0.5).advance(1);
   EXPECT_EQ(label, "reading");
+}
+
+TEST(Task, what_begins_is_told_before_any_of_it_is_done) {
+  std::string label;
+  double last = -1;
+  const Task root = Task::root([&](double done, const std::string& l) {
+    label = l;
+    last = done;
+  });
+  const Task part = root.part(0.5, "reading");
+  EXPECT_EQ(label, "reading");
+  EXPECT_EQ(last, 0);
 }
 
 }  // namespace
