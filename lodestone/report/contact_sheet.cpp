@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 
 #include "lodestone/base/units.h"
@@ -65,17 +66,43 @@ std::string length_text(double length, const std::string& unit) {
   return fmt::format("{:.4g}{}{}", length, unit.empty() ? "" : " ", unit);
 }
 
-// As the screen shows the model from `distance`, to the surface of the sphere around the original's box.
-Camera at_distance(const Camera& framed, const render::Scene& original, double error, double distance,
-                   const SheetOptions& options) {
-  Camera camera = framed;
+// A camera, and how large its picture shows the model, of the size on the screen: 1, or less where it would not fit.
+struct LowerView {
+  Camera camera;
+  double scale = 1;
+};
+
+// As the screen shows the model from `distance`, to the surface of the sphere around the original's box. Where that
+// sphere is larger than the cell it is reduced, and seen from no nearer than its own radius, where little would be seen
+// of it.
+LowerView at_distance(const Camera& framed, const render::Scene& original, double error, double distance,
+                      const SheetOptions& options) {
+  LowerView out{framed, 1};
   const double radius = original.bounds().diagonal() / 2;
-  camera.eye = original.bounds().center() - framed.forward * (radius + distance);
-  camera.near_distance = distance / 2;
-  const double lines = static_cast<double>(options.picture.height);
-  camera.half_height =
+  const auto lines = static_cast<double>(options.picture.height);
+  const double on_screen =
       framed.orthographic ? lines / 2 * error / options.pixels : framed.half_height * lines / options.view.height_px;
-  return camera;
+  const double narrow = std::min(1.0, static_cast<double>(options.picture.width) / lines);
+  // Half the height that holds the sphere, from so far away.
+  const auto whole = [&](double away) {
+    return (framed.orthographic ? radius : radius / std::sqrt(away * away - radius * radius)) / narrow;
+  };
+  double away = radius + distance;
+  out.camera.half_height = on_screen;
+  if (whole(away) > on_screen) {
+    const double nearest = std::max(away, 2 * radius);
+    out.camera.half_height = whole(nearest);
+    out.scale = on_screen / out.camera.half_height * (framed.orthographic ? 1 : away / nearest);
+    away = nearest;
+  }
+  out.camera.eye = original.bounds().center() - framed.forward * away;
+  out.camera.near_distance = (away - radius) / 2;
+  return out;
+}
+
+std::string size_text(double scale, const SheetOptions& options) {
+  if (scale == 1) return fmt::format("as large as on {:g} lines", options.view.height_px);
+  return fmt::format("at {:.2g} % of its size on {:g} lines", 100 * scale, options.view.height_px);
 }
 
 void paste(const Pixels& picture, Pixels& sheet, std::uint32_t left, std::uint32_t top) {
@@ -122,12 +149,14 @@ Result<Pixels> contact_sheet(const std::vector<SheetLevel>& levels, const SheetO
     const double error = levels[std::min(std::max<std::size_t>(i, 1), levels.size() - 1)].error;
     const double distance = measure::switch_distance(error, options.pixels, options.view);
     if (!(distance > 1e-9 * diagonal)) continue;  // as exact as the original: it never has to be far away
-    const Camera camera = at_distance(framed, original, error, distance, options);
-    const Result<Pixels> lower = render::render(levels[i].scene, camera, options.picture, part.part(0.5));
+    const LowerView view = at_distance(framed, original, error, distance, options);
+    const Result<Pixels> lower = render::render(levels[i].scene, view.camera, options.picture, part.part(0.5));
     if (!lower) return fail(lower.error());
     paste(*lower, sheet, left, lower_row(options).top);
-    write_line(sheet, fmt::format("from {} away", length_text(distance, options.unit)), left,
-               lower_row(options).caption, options);
+    const std::uint32_t below = lower_row(options).caption;
+    write_line(sheet, fmt::format("{} {} away", i == 0 ? "until" : "from", length_text(distance, options.unit)), left,
+               below, options);
+    write_line(sheet, size_text(view.scale, options), left, below + kLine, options);
   }
   return sheet;
 }

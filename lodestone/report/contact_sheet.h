@@ -36,9 +36,9 @@ struct SheetSize {
 SheetSize sheet_size(std::size_t levels, const SheetOptions& options);
 
 /// A column a level, levels[0] the original. Above: all from one camera, which frames the original. Below: each from
-/// the distance where it takes over (its error covers `pixels` there), as large as the screen of `view` shows it then
-/// and cut to the cell; the original from the first level's. Captions tell triangles, error and distance. Errors:
-/// bad_argument (no level, sides above render::kMostSide, heat), cancelled.
+/// the distance where it takes over (its error covers `pixels` there), as large as the screen of `view` shows it then,
+/// reduced where that would not fit into the cell; the original from the first level's. Captions tell triangles, error,
+/// distance and size. Errors: bad_argument (no level, sides above render::kMostSide, heat), cancelled.
 Result<Pixels> contact_sheet(const std::vector<SheetLevel>& levels, const SheetOptions& options, Task task = {});
 
 }  // namespace lodestone::report

@@ -65,6 +65,28 @@ TEST(ContactSheet, lower_cells_shrink_with_the_error) {
   EXPECT_NEAR(static_cast<double>(large) / static_cast<double>(small_one), 4, 0.8);
 }
 
+// A level with a small error takes over from nearby, where the model is larger than the cell.
+TEST(ContactSheet, lower_cells_show_the_whole_model) {
+  SheetOptions options = small();
+  for (const bool flat : {false, true}) {
+    options.lens.orthographic = flat;
+    for (const double error : {1e-5, 1e-3, 0.01}) {
+      const auto sheet = contact_sheet(tori({{40, 0}, {12, error}}), options);
+      ASSERT_TRUE(sheet);
+      const std::uint32_t top = sheet_size(2, options).height - 90 - 2 * 22 - 6;
+      std::size_t at_sides = 0;
+      for (std::uint32_t x = 0; x < 120; ++x) {
+        for (const std::uint32_t y : {0U, 89U}) at_sides += sheet->at(144 + x, top + y) != options.picture.background;
+      }
+      for (std::uint32_t y = 0; y < 90; ++y) {
+        for (const std::uint32_t x : {0U, 119U}) at_sides += sheet->at(144 + x, top + y) != options.picture.background;
+      }
+      EXPECT_EQ(at_sides, 0U) << error;
+      EXPECT_GT(drawn(*sheet, 144, top, options), 500U) << error;
+    }
+  }
+}
+
 TEST(ContactSheet, levels_without_error_and_single_ones) {
   EXPECT_TRUE(contact_sheet(tori({{12, 0}}), small()));
   EXPECT_TRUE(contact_sheet(tori({{12, 0}, {12, 0}}), small()));
