@@ -152,14 +152,14 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   Stopwatch watch;
   BuildReport report;
   std::vector<std::string> warnings;  // on top of the model's own
-  Result<Model> model = read_job(job, plan, report, console, task.part(0.1, "reading"));
+  Result<Model> model = read_job(job, plan, report, console, task.part(0.05, "reading"));
   if (!model) return fail(model.error());
   report.read_seconds = watch.lap();
   const Result<chain::LadderOptions> options = prepare_job(plan, *model, report, warnings, console, task);
   if (!options) return fail(options.error());
   const bool one_file = job.output.filename().string().find("{level}") == std::string::npos;
   const Result<chain::LadderResult> result = make_levels(std::move(*model), plan, *options, one_file, report, console,
-                                                         task.part(plan.report ? 0.5 : 0.8, "making levels"));
+                                                         task.part(plan.report ? 0.7 : 0.9, "making levels"));
   if (!result) return fail(result.error());
   report.levels_seconds = result->simplify_seconds;
   report.measure_seconds = result->measure_seconds;
@@ -167,12 +167,12 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
 
   std::optional<ReportPage> page;  // drawn before anything is written, so that an interrupted run leaves nothing
   if (plan.report) {
-    Result<ReportPage> drawn = ReportPage::draw(job, plan, *result, warnings, task.part(0.3, "drawing"));
+    Result<ReportPage> drawn = ReportPage::draw(job, plan, *result, warnings, task.part(0.2, "drawing"));
     if (!drawn) return fail(drawn.error());
     page.emplace(std::move(*drawn));
   }
   watch.lap();
-  const Result<void> written = write_job(job, plan, *result, page, report, console, task.part(0.1, "writing"));
+  const Result<void> written = write_job(job, plan, *result, page, report, console, task.part(0.05, "writing"));
   if (!written) return fail(written.error());
   report.write_seconds = watch.lap();
   if (plan.verify) {
@@ -293,7 +293,7 @@ class ResultFolder {
 Result<ExitCode> run_single(const BuildJob& job, const BuildPlan& plan, bool json, Console& console) {
   const Result<BuildReport> report = build_one(job, plan, console, console.task().part(1.0));
   if (!report) return fail(report.error());
-  console.result(json ? to_json(*report) : table_of(*report, plan));
+  json ? console.result(to_json(*report)) : console.table(table_of(*report, plan));
   tell_shortfalls(*report, console);
   return report->shortfalls.empty() ? ExitCode::done : ExitCode::fell_short;
 }
@@ -317,7 +317,7 @@ Result<ExitCode> run_batch(const std::vector<BuildJob>& jobs, const BuildPlan& p
       failures.push_back(report.error());
       continue;
     }
-    if (!json) console.result((i > 0 ? "\n" : "") + table_of(*report, plan));
+    if (!json) console.table((i > 0 ? "\n" : "") + table_of(*report, plan));
     tell_shortfalls(*report, console);
     fell_short = fell_short || !report->shortfalls.empty();
     runs.push_back(std::move(*report));

@@ -235,6 +235,9 @@ Result<std::string> report_pattern(const Arguments& arguments, bool batch) {
 }  // namespace
 
 Result<BuildJobs> build_jobs(const Arguments& arguments, const VolumeRequest& volume) {
+  if (const std::string remedy = forgotten_output(arguments); !remedy.empty()) {
+    return fail(ErrorCode::bad_argument, "build needs an output", {}, remedy);
+  }
   if (!arguments.has("--output")) return missing_output("build", arguments.inputs.front());
   const std::string output = arguments.text("--output");
   const bool into_folder = output.ends_with('/') || is_folder(output);

@@ -4,9 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "app/numbers.h"
+#include "app/suggest.h"
 #include "lodestone/base/units.h"
 
 namespace lodestone::app {
@@ -22,15 +23,14 @@ tl::unexpected<Error> bad_value(std::string_view option, std::string_view text, 
 
 Result<std::uint64_t> parse_count(std::string_view option, std::string_view text, std::uint64_t least,
                                   std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc::result_out_of_range || (error == std::errc{} && value > most)) {
+  const std::optional<Count> count = count_in(text);
+  if (count && (count->too_large || count->value > most)) {
     return fail(ErrorCode::bad_argument, fmt::format("{} is {}, the limit is {}", option, text, with_separators(most)));
   }
-  if (error != std::errc{} || end != text.data() + text.size() || value < least) {
+  if (!count || count->value < least) {
     return bad_value(option, text, fmt::format("it must be a whole number of at least {}", least));
   }
-  return value;
+  return count->value;
 }
 
 // What CLI11 fills; strings must not move while it holds their addresses.
@@ -47,30 +47,32 @@ void add_option(CLI::App& parser, Slot& slot) {
   if (spec.is_switch()) {
     slot.option = parser.add_flag(names, slot.set);
   } else {
-    slot.option = parser.add_option(names, slot.text)->type_name(spec.value);
+    slot.option = parser.add_option(names, slot.text)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   }
 }
 
-Error unknown_word(const VerbSpec& verb, const std::string& word) {
-  if (word.empty() || word[0] != '-' || word == "-") {
-    return usage_error(verb, verb.inputs.most == 0 ? fmt::format("{} takes no input, but got '{}'", verb.name, word)
-                                                   : fmt::format("{} takes {}, '{}' is one too many", verb.name,
-                                                                 verb.inputs.usage, word));
-  }
+// A word too many: most often an output as other programs take it, without -o.
+Error surplus_input(const VerbSpec& verb, const std::string& word, bool has_output) {
+  if (verb.inputs.most == 0) return usage_error(verb, fmt::format("{} takes no input, but got '{}'", verb.name, word));
+  std::string what = fmt::format("{} takes {}, '{}' is one too many", verb.name, verb.inputs.usage, word);
+  if (has_output || find_option(verb, "--output") == nullptr) return usage_error(verb, std::move(what));
+  return Error{ErrorCode::bad_argument, std::move(what), {}, fmt::format("to write {}, use -o {}", word, word)};
+}
+
+Error unknown_option(const VerbSpec& verb, const std::string& word) {
   std::vector<std::string> names;
   for (const OptionGroup& group : verb.groups) {
     for (const OptionSpec& option : group.options) names.push_back(option.name);
   }
   const std::string name = word.substr(0, word.find('='));
-  return usage_error(verb,
-                     fmt::format("{} has no option '{}', did you mean {}?", verb.name, name, nearest(name, names)));
+  return usage_error(verb, fmt::format("{} has no option '{}'{}", verb.name, name, did_you_mean(name, names)));
 }
 
 Result<void> check_choice(const VerbSpec& verb, const std::string& what, const std::string& text,
                           const std::vector<std::string>& choices) {
   if (choices.empty() || std::find(choices.begin(), choices.end(), text) != choices.end()) return {};
-  return fail(usage_error(verb, fmt::format("{} '{}' is none of {}, did you mean {}?", what, text,
-                                            fmt::join(choices, ", "), nearest(text, choices))));
+  return fail(usage_error(
+      verb, fmt::format("{} '{}' is none of {}{}", what, text, fmt::join(choices, ", "), did_you_mean(text, choices))));
 }
 
 Result<void> check_inputs(const VerbSpec& verb, const std::vector<std::string>& inputs) {
@@ -86,10 +88,25 @@ Result<void> check_inputs(const VerbSpec& verb, const std::vector<std::string>& 
   return {};
 }
 
-Error parse_error(const VerbSpec& verb, const CLI::ParseError& error) {
-  std::string what = error.what();
-  std::replace(what.begin(), what.end(), '\n', ' ');
-  return usage_error(verb, what);
+// What the parser can't take: an option at the end that needs a value. Its own words are for programmers.
+Error parse_error(const VerbSpec& verb, const std::vector<std::string>& words) {
+  const OptionSpec* last = words.empty() ? nullptr : find_option(verb, words.back());
+  if (last == nullptr || last->is_switch()) return usage_error(verb, "the command line can't be read");
+  return usage_error(verb, fmt::format("{} needs a value: {}", words.back(), last->value));
+}
+
+// "--json=yes"
+Result<void> check_switches(const VerbSpec& verb, const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    if (word == "--") break;
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos || !word.starts_with("--")) continue;
+    const OptionSpec* option = find_option(verb, std::string_view(word).substr(0, equals));
+    if (option != nullptr && option->is_switch()) {
+      return fail(usage_error(verb, fmt::format("{} takes no value, but got '{}'", option->name, word)));
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -107,12 +124,19 @@ Result<std::uint64_t> Arguments::count(std::string_view option, std::uint64_t le
 Result<double> Arguments::positive(std::string_view option) const {
   const std::string word = text(option);
   const std::optional<double> value = parse_number(word);
+  if (const std::string meant = with_decimal_point(word); !value && !meant.empty()) {
+    return fail(decimal_comma(option, word, meant));
+  }
   if (!value || *value <= 0) return bad_value(option, word, "it must be a number above 0");
   return *value;
 }
 
 Result<std::vector<std::size_t>> Arguments::count_list(std::string_view option) const {
   std::vector<std::size_t> values;
+  if (const std::string meant = without_thousands(text(option)); !meant.empty()) {
+    return fail(ErrorCode::bad_argument, fmt::format("{} is '{}', but commas separate values", option, text(option)),
+                {}, fmt::format("write {}", meant));
+  }
   for (const std::string& word : split_commas(text(option))) {
     const Result<std::uint64_t> value = parse_count(option, word, 1);
     if (!value) return fail(value.error());
@@ -133,15 +157,19 @@ Result<Arguments> parse_arguments(const VerbSpec& verb, const std::vector<std::s
 
   Arguments out;
   out.verb = &verb;
+  if (const Result<void> checked = check_switches(verb, words); !checked) return fail(checked.error());
   // CLI11 parses from the back of its vector. Inputs are what it leaves over: a verb's inputs may stand anywhere.
   std::vector<std::string> reversed(words.rbegin(), words.rend());
   try {
     parser.parse(reversed);
-  } catch (const CLI::ParseError& error) {
-    return fail(parse_error(verb, error));
+  } catch (const CLI::ParseError&) {
+    return fail(parse_error(verb, words));
   }
   for (Slot& slot : slots) {
     if (slot.option->count() == 0) continue;
+    if (slot.option->count() > 1 && !slot.spec->is_switch()) {
+      return fail(usage_error(verb, fmt::format("{} is given {} times", slot.spec->name, slot.option->count())));
+    }
     if (const Result<void> checked = check_choice(verb, slot.spec->name, slot.text, slot.spec->choices); !checked) {
       return fail(checked.error());
     }
@@ -154,8 +182,9 @@ Result<Arguments> parse_arguments(const VerbSpec& verb, const std::vector<std::s
       continue;
     }
     const bool looks_like_option = !only_inputs && word.size() > 1 && word[0] == '-';
-    if (looks_like_option || (out.inputs.size() >= verb.inputs.most && !out.has("--help"))) {
-      return fail(unknown_word(verb, word));
+    if (looks_like_option) return fail(unknown_option(verb, word));
+    if (out.inputs.size() >= verb.inputs.most && !out.has("--help")) {
+      return fail(surplus_input(verb, word, out.has("--output")));
     }
     out.inputs.push_back(word);
   }
@@ -164,38 +193,11 @@ Result<Arguments> parse_arguments(const VerbSpec& verb, const std::vector<std::s
   return out;
 }
 
-std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
-  std::string best;
-  std::size_t best_edits = kAnyNumber;
-  for (const std::string& candidate : candidates) {
-    std::vector<std::size_t> row(candidate.size() + 1);
-    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-    for (std::size_t i = 0; i < word.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i + 1;
-      for (std::size_t j = 1; j < row.size(); ++j) {
-        const std::size_t above = row[j];
-        row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (word[i] == candidate[j - 1] ? 0 : 1)});
-        diagonal = above;
-      }
-    }
-    if (row.back() < best_edits) {
-      best_edits = row.back();
-      best = candidate;
-    }
-  }
-  return best;
-}
-
-std::vector<std::string> split_commas(std::string_view text) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  while (true) {
-    const std::size_t comma = text.find(',', begin);
-    parts.emplace_back(text.substr(begin, comma - begin));
-    if (comma == std::string_view::npos) return parts;
-    begin = comma + 1;
-  }
+Error decimal_comma(std::string_view option, std::string_view text, std::string_view meant) {
+  return Error{ErrorCode::bad_argument,
+               fmt::format("{} is '{}', but commas separate values", option, text),
+               {},
+               fmt::format("write {} with a decimal point, or give each value its unit", meant)};
 }
 
 }  // namespace lodestone::app

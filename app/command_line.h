@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/numbers.h"
 #include "app/spec.h"
 
 namespace lodestone::app {
@@ -34,10 +35,7 @@ class Arguments {
 /// Parses what follows the verb. Errors: bad_argument, with the nearest name for an unknown option.
 Result<Arguments> parse_arguments(const VerbSpec& verb, const std::vector<std::string>& words);
 
-/// The candidate with the fewest edits to `word`; empty when there is none.
-std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
-
-/// "a,b,c" -> {"a", "b", "c"}
-std::vector<std::string> split_commas(std::string_view text);
+/// What to say about "0,1%", where `meant` is "0.1%".
+Error decimal_comma(std::string_view option, std::string_view text, std::string_view meant);
 
 }  // namespace lodestone::app

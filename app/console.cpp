@@ -1,7 +1,6 @@
 #include "app/console.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
 
@@ -11,7 +10,7 @@ namespace lodestone::app {
 
 Console::Console(Talk talk, int threads)
     : talk_(talk),
-      progress_(talk != Talk::quiet && ::isatty(STDERR_FILENO) == 1),
+      progress_(talk == Talk::quiet ? Terminal::none : error_terminal()),
       task_(Task::root(progress_.callback(), threads)) {}
 
 void Console::say(std::string_view line) const {
@@ -29,11 +28,21 @@ void Console::detail(std::string_view text) const {
 
 void Console::error(const Error& error) const { say(error_text(error)); }
 
+Error Console::stopped() const {
+  const std::string at_work = progress_.at_work();
+  std::string what = at_work.empty() ? "interrupted" : fmt::format("interrupted while {}", at_work);
+  return Error{ErrorCode::cancelled, std::move(what), {}, "nothing half done is left"};
+}
+
 void Console::shortfall(std::string_view text) const { say("lod: " + printable(text)); }
 
 void Console::result(std::string_view text) const {
   progress_.clear();
   std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+void Console::table(std::string_view text) const {
+  if (talk_ != Talk::quiet) result(text);
 }
 
 void Console::wrote(const std::string& file) {

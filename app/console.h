@@ -24,9 +24,12 @@ class Console {
   void note(std::string_view text) const;       ///< unless --quiet
   void detail(std::string_view text) const;     ///< with --verbose
   void error(const Error& error) const;         ///< always
+  Error stopped() const;                        ///< what an interrupted run says: what it was doing
   void shortfall(std::string_view text) const;  ///< always: why a target was not reached
   /// To standard output. Errors are found by finish().
   void result(std::string_view text) const;
+  /// A result as a table or line for people, to standard output; not with --quiet.
+  void table(std::string_view text) const;
   /// Remembers a result file that stands under its name, for finish().
   void wrote(const std::string& file);
   /// Flushes standard output. Errors: cannot_write; it says which files were written all the same.

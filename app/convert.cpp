@@ -141,7 +141,8 @@ Result<ExitCode> run_convert(const Arguments& arguments, Console& console) {
     console.note(fmt::format("{}: {}", plan->output, warning));
     report.warnings.push_back(warning);
   }
-  console.result(arguments.has("--json") ? to_json(report) : lines_of(report, written->level_bytes, plan->output));
+  arguments.has("--json") ? console.result(to_json(report))
+                          : console.table(lines_of(report, written->level_bytes, plan->output));
   return ExitCode::done;
 }
 

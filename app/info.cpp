@@ -167,7 +167,7 @@ Result<ExitCode> run_info(const Arguments& arguments, Console& console) {
     return fail(examined.error());
   }
   report.levels = levels_in_file(report.path);
-  console.result(arguments.has("--json") ? to_json(report) : table_of(report));
+  arguments.has("--json") ? console.result(to_json(report)) : console.table(table_of(report));
   return ExitCode::done;
 }
 

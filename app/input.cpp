@@ -12,6 +12,7 @@
 #include "app/json.h"
 #include "app/text.h"
 #include "lodestone/base/file.h"
+#include "lodestone/io/content.h"
 #include "lodestone/io/read.h"
 #include "lodestone/io/write.h"
 
@@ -33,6 +34,7 @@ Result<Model> read_input(const fs::path& path, const Console& console, Task task
                                                                : io::read_model(path, options, task);
   };
   Result<Model> model = read();
+  if (!model && !volume.read.raw) return fail(io::told_by_content(model.error(), path));
   if (!model) return model;
   for (const std::string& warning : model->warnings) console.note(fmt::format("{}: {}", path.string(), warning));
   return model;
@@ -125,6 +127,13 @@ tl::unexpected<Error> missing_output(const std::string& verb, const std::string&
   const std::string stem = fs::path(input).stem().string();
   return fail(ErrorCode::bad_argument, fmt::format("{} needs an output", verb), {},
               fmt::format("add one, such as -o {}_{}.glb", stem, verb == "build" ? "lod" : verb));
+}
+
+std::string forgotten_output(const Arguments& arguments) {
+  if (arguments.has("--output") || arguments.inputs.size() < 2) return {};
+  const std::string& last = arguments.inputs.back();
+  std::error_code ignored;
+  return fs::exists(last, ignored) ? std::string() : fmt::format("to write {}, use -o {}", last, last);
 }
 
 Result<std::vector<fs::path>> models_in(const fs::path& directory) {

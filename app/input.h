@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/command_line.h"
 #include "app/console.h"
 #include "app/volume_input.h"
 #include "lodestone/base/result.h"
@@ -43,6 +44,8 @@ Result<void> check_place(const std::filesystem::path& output, const std::vector<
 
 /// What the error says when -o is missing.
 tl::unexpected<Error> missing_output(const std::string& verb, const std::string& input);
+/// "to write x.glb, use -o x.glb" where the last of several inputs is no file yet and -o is missing; else empty.
+std::string forgotten_output(const Arguments& arguments);
 
 /// The files of a directory that are models by their extension, by name. Errors: cannot_read, empty.
 Result<std::vector<std::filesystem::path>> models_in(const std::filesystem::path& directory);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "app/child_process.h"
+#include "app/terminal.h"
 #include "app/text.h"
 #include "lodestone/base/check.h"
 
@@ -37,7 +38,9 @@ extern "C" void on_signal(int signal_number) {
 
 // A handler can't make text, so it is made beforehand. Names of temporary files hold the process id (base/file.cpp).
 std::string warning_text() {
-  const char* clear_bar = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
+  const char* clear_bar = error_terminal() == Terminal::full    ? "\r\033[K"
+                          : error_terminal() == Terminal::plain ? "\r"
+                                                                : "";
   const std::string left = fmt::format(".*.{}.tmp beside the output, {}*", ::getpid(), temporary_folder_pattern());
   return fmt::format("{}lod: stopping; a third signal ends it at once and may leave temporary files: {}\n", clear_bar,
                      printable(left));

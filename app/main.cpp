@@ -13,6 +13,7 @@
 #include "app/foreign.h"
 #include "app/help.h"
 #include "app/interrupt.h"
+#include "app/suggest.h"
 #include "app/text.h"
 #include "lodestone/base/parallel.h"
 
@@ -42,10 +43,8 @@ Error unknown_verb(const std::string& word) {
   }
   std::vector<std::string> names;
   for (const VerbSpec& verb : verbs()) names.push_back(verb.name);
-  return Error{ErrorCode::bad_argument,
-               fmt::format("no verb '{}', did you mean {}?", word, nearest(word, names)),
-               {},
-               "see 'lod help'"};
+  return Error{
+      ErrorCode::bad_argument, fmt::format("no verb '{}'{}", word, did_you_mean(word, names)), {}, "see 'lod help'"};
 }
 
 int run_verb(const VerbSpec& verb, const Arguments& arguments) {
@@ -61,7 +60,7 @@ int run_verb(const VerbSpec& verb, const Arguments& arguments) {
   cancel_on_signals(console.task());
   const Result<ExitCode> outcome = verb.run(arguments, console);
   if (!outcome) {
-    console.error(outcome.error());
+    console.error(outcome.error().code == ErrorCode::cancelled ? console.stopped() : outcome.error());
     return code(exit_code_of(outcome.error()));
   }
   if (const Result<void> finished = console.finish(); !finished) return tell(finished.error());

@@ -70,22 +70,56 @@ Result<measure::ImageDeviation> compare_pictures(const Model& a, const Model& b,
   return reference->deviation_of(b, task.part(0.5));
 }
 
-// --bounded: until the bound is within that length, whatever it takes.
-Result<measure::Distance> measure_distance(const Model& a, const Model& b, measure::DistanceOptions options,
+// What both searches know of one direction.
+measure::DirectedDistance joined(measure::DirectedDistance a, const measure::DirectedDistance& b) {
+  if (b.max > a.max) {
+    a.max = b.max;
+    a.max_at = b.max_at;
+  }
+  a.bound = std::min(a.bound, b.bound);
+  return a;
+}
+
+// Searches on until both bounds are within `length` of what was found, however long it takes. They never come out
+// wider than they were.
+Result<void> bound_further(measure::Distance& known, const measure::Reference& reference, const Model& b, double length,
+                           measure::DistanceOptions options, const Task& task) {
+  const auto is_near = [&](const measure::DirectedDistance& one) { return one.bound - one.max <= length; };
+  if (!is_near(known.forward) || !is_near(known.backward)) {
+    options.samples = 1;  // the figures of samples are known
+    options.tolerance = 0;
+    options.least_tolerance = length;
+    options.queries = std::uint64_t{1} << 60;
+    const Result<measure::Distance> further = reference.distance_to(b, options, task);
+    if (!further) return fail(further.error());
+    known.forward = joined(known.forward, further->forward);
+    known.backward = joined(known.backward, further->backward);
+  }
+  known.max = std::max(known.forward.max, known.backward.max);
+  known.bound = std::max(known.forward.bound, known.backward.bound);
+  known.is_bounded = true;
+  return {};
+}
+
+Result<measure::Distance> measure_distance(const Model& a, const Model& b, const measure::DistanceOptions& options,
                                            const std::vector<LengthArgument>& bounded, const Task& task) {
   const Result<measure::Reference> reference = measure::Reference::create(a, task.part(0.1));
   if (!reference) return fail(reference.error());
+  double length = 0;  // of --bounded
   if (!bounded.empty()) {
-    const Result<std::vector<double>> length = to_model_units(bounded, a, reference->diagonal());
-    if (!length) return fail(length.error());
-    if (length->front() < 1e-9 * reference->diagonal()) {
+    const Result<std::vector<double>> lengths = to_model_units(bounded, a, reference->diagonal());
+    if (!lengths) return fail(lengths.error());
+    length = lengths->front();
+    if (length < 1e-9 * reference->diagonal()) {
       return fail(ErrorCode::bad_argument, "--bounded is too small", {}, "use at least 1e-9 of the diagonal");
     }
-    options.tolerance = 0;
-    options.least_tolerance = length->front();
-    options.queries = std::uint64_t{1} << 60;
   }
-  return reference->distance_to(b, options, task);
+  Result<measure::Distance> distance = reference->distance_to(b, options, task.part(length > 0 ? 0.4 : 0.9));
+  if (!distance || length == 0) return distance;
+  if (Result<void> ok = bound_further(*distance, *reference, b, length, options, task.part(0.5)); !ok) {
+    return fail(ok.error());
+  }
+  return distance;
 }
 
 struct MeasurePlan {
@@ -183,7 +217,7 @@ Result<ExitCode> run_measure(const Arguments& arguments, Console& console) {
     return fail(measured.error());
   }
   report.seconds = watch.total();
-  console.result(arguments.has("--json") ? to_json(report) : table_of(report));
+  arguments.has("--json") ? console.result(to_json(report)) : console.table(table_of(report));
   return ExitCode::done;
 }
 

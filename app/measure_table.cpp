@@ -103,7 +103,10 @@ std::string table_of(const MeasureReport& report) {
   const std::string attributes = report.attributes ? table_of(*report.attributes) : "";
   const std::string image = report.image ? table_of(*report.image) : "";
   const std::string heat = report.heat ? line_of(*report.heat, report.unit) : "";
-  return table.text() + shape_table(report) + attributes + image + heat +
+  const char* legend =
+      "max: the largest of samples and vertices; found: the largest of all points looked at;\n"
+      "at most: a certified bound, no point is farther away\n";
+  return table.text() + legend + shape_table(report) + attributes + image + heat +
          fmt::format("\n{} samples a direction, diagonal of A {}, {} s\n", with_separators(d.samples),
                      short_number(d.diagonal), seconds_text(report.seconds));
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <span>
 
+#include "app/input.h"
 #include "app/json.h"
 #include "app/picture.h"
 #include "app/render_options.h"
@@ -69,6 +70,9 @@ Result<Request> request_of(const Arguments& arguments) {
 
 // What only --sheet knows.
 Result<void> check_one_picture(const Arguments& arguments) {
+  if (const std::string remedy = forgotten_output(arguments); !remedy.empty()) {
+    return fail(ErrorCode::bad_argument, "render needs an output", {}, remedy);
+  }
   if (arguments.inputs.size() > 1) {
     return fail(ErrorCode::bad_argument, fmt::format("render draws one model, but got {}", arguments.inputs.size()), {},
                 "add --sheet to draw them beside each other, as levels of the first");
@@ -145,10 +149,10 @@ Result<ExitCode> run_render(const Arguments& arguments, Console& console) {
   console.wrote(request.output);
   report.bytes = *written;
   report.write_seconds = watch.lap();
-  console.result(arguments.has("--json")
-                     ? to_json(report)
-                     : fmt::format("{}: {} x {} pixels, {} triangles, {}\n", printable(report.file), report.width,
-                                   report.height, with_separators(report.triangles), human_bytes(report.bytes)));
+  arguments.has("--json")
+      ? console.result(to_json(report))
+      : console.table(fmt::format("{}: {} x {} pixels, {} triangles, {}\n", printable(report.file), report.width,
+                                  report.height, with_separators(report.triangles), human_bytes(report.bytes)));
   return ExitCode::done;
 }
 

@@ -9,6 +9,7 @@
 #include "app/render_options.h"
 #include "app/shared_options.h"
 #include "app/text.h"
+#include "lodestone/base/file.h"
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 #include "lodestone/io/image_encode.h"
@@ -81,6 +82,7 @@ struct Source {
 Result<std::vector<Source>> sources_of(const std::vector<std::string>& inputs) {
   std::vector<Source> sources;
   if (inputs.size() == 1) {
+    if (const auto there = InputFile::open(inputs.front()); !there) return fail(there.error());
     const std::uint64_t levels = levels_in_file(inputs.front());
     if (levels < 2) {
       return fail(ErrorCode::bad_argument, "has no levels (MSFT_lod) for a sheet", inputs.front(),
@@ -196,7 +198,7 @@ Result<ExitCode> run_sheet(const Arguments& arguments, Console& console) {
   report.height = sheet->height;
   report.bytes = *written;
   report.seconds = watch.total();
-  console.result(arguments.has("--json") ? to_json(report) : line_of(report));
+  arguments.has("--json") ? console.result(to_json(report)) : console.table(line_of(report));
   return ExitCode::done;
 }
 

@@ -70,9 +70,9 @@ Result<ExitCode> run_sample(const Arguments& arguments, Console& console) {
   for (const Mesh& mesh : model->meshes) report.vertices += mesh.vertex_count();
   report.bytes = written->total_bytes;
   report.seconds = watch.total();
-  console.result(arguments.has("--json") ? to_json(report)
-                                         : fmt::format("{}: {} triangles, {}\n", printable(report.file),
-                                                       with_separators(report.triangles), human_bytes(report.bytes)));
+  arguments.has("--json") ? console.result(to_json(report))
+                          : console.table(fmt::format("{}: {} triangles, {}\n", printable(report.file),
+                                                      with_separators(report.triangles), human_bytes(report.bytes)));
   return ExitCode::done;
 }
 

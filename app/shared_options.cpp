@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "app/numbers.h"
 #include "lodestone/base/units.h"
 #include "lodestone/chain/build_ladder.h"
 #include "lodestone/measure/image.h"
@@ -262,7 +263,14 @@ OptionGroup general_group() {
             "at most N threads, 0 = all; the result is the same",
             {},
             Completion::none},
-           {"--quiet", "-q", "", "", "", "only errors on standard error: no progress, no notes", {}, Completion::none},
+           {"--quiet",
+            "-q",
+            "",
+            "",
+            "",
+            "tell errors alone: no table, no progress, no notes; JSON is printed all the same",
+            {},
+            Completion::none},
            {"--verbose", "-v", "", "", "", "tell decisions and details", {}, Completion::none},
            {"--help", "-h", "", "", "", "this text", {}, Completion::none}}};
 }
@@ -299,7 +307,11 @@ Result<LengthRules> length_rules(const Arguments& arguments) {
 Result<std::vector<LengthArgument>> length_list(const Arguments& arguments, std::string_view option,
                                                 const LengthRules& rules, BareLength bare) {
   std::vector<LengthArgument> lengths;
-  for (const std::string& word : split_commas(arguments.text(option))) {
+  const std::string list = arguments.text(option);
+  if (const std::string meant = with_decimal_point(list); !meant.empty()) {
+    return fail(decimal_comma(option, list, meant));
+  }
+  for (const std::string& word : split_commas(list)) {
     const Result<Length> parsed = parse_length(word);
     if (!parsed) {
       Error error = parsed.error();
@@ -359,7 +371,11 @@ void doubt_lengths(std::string_view option, const std::vector<LengthArgument>& l
 
 Result<std::vector<double>> ratio_list(const Arguments& arguments, std::string_view option) {
   std::vector<double> ratios;
-  for (const std::string& word : split_commas(arguments.text(option))) {
+  const std::string list = arguments.text(option);
+  if (const std::string meant = with_decimal_point(list); !meant.empty()) {
+    return fail(decimal_comma(option, list, meant));
+  }
+  for (const std::string& word : split_commas(list)) {
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     const std::string_view rest(end, static_cast<std::size_t>(word.data() + word.size() - end));

@@ -5,6 +5,7 @@
 #include "app/influence.h"
 #include "app/input.h"
 #include "app/json.h"
+#include "app/numbers.h"
 #include "app/shared_options.h"
 #include "app/table.h"
 #include "app/text.h"
@@ -32,7 +33,11 @@ Result<void> check_target(const Arguments& arguments) {
   const Result<std::string> target = given_target(arguments, {"--ratio", "--triangles", "--error"}, remedy);
   if (!target) return fail(target.error());
   if (target->empty()) return fail(ErrorCode::bad_argument, "simplify needs a target", {}, remedy);
-  if (arguments.text(*target).find(',') == std::string::npos) return {};
+  const std::string text = arguments.text(*target);
+  if (text.find(',') == std::string::npos || (*target == "--triangles" && count_in(text))) return {};
+  if (const std::string meant = with_decimal_point(text); !meant.empty() && *target != "--triangles") {
+    return fail(decimal_comma(*target, text, meant));
+  }
   return fail(ErrorCode::bad_argument, fmt::format("{} takes one value here", *target), {},
               "'lod build' makes several levels");
 }
@@ -49,9 +54,9 @@ Result<SimplifyPlan> plan_of(const Arguments& arguments) {
     plan.ratio = std::move(*ratio);
   }
   if (arguments.has("--triangles")) {
-    Result<std::vector<std::size_t>> triangles = arguments.count_list("--triangles");
+    const Result<std::uint64_t> triangles = arguments.count("--triangles", 1);
     if (!triangles) return fail(triangles.error());
-    plan.triangles = std::move(*triangles);
+    plan.triangles = {*triangles};
   }
   if (arguments.has("--error")) {
     Result<std::vector<LengthArgument>> error = length_list(arguments, "--error", plan.lengths);
@@ -142,7 +147,7 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
   if (!level) return fail(level.error());
   if (const Result<void> there = check_level(input, *level); !there) return fail(there.error());
   Stopwatch watch;
-  Result<Model> model = read_input(input, console, console.task().part(0.15, "reading"),
+  Result<Model> model = read_input(input, console, console.task().part(0.05, "reading"),
                                    {.levels = false, .draw_level = *level}, *volume);
   if (!model) return fail(model.error());
   if (const Result<void> kept = io::check_replaced(*model, report.output); !kept) return fail(kept.error());
@@ -161,11 +166,11 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
     report.warnings.push_back(warning);
   }
   const Result<chain::SimplifyModelResult> result =
-      chain::simplify_model(*model, *options, console.task().part(0.75, "simplifying"));
+      chain::simplify_model(*model, *options, console.task().part(0.9, "simplifying"));
   if (!result) return fail(result.error());
   watch.lap();
   const Result<io::WriteReport> written = io::write_model(
-      result->level.model, report.output, io::WriteOptions{compression, {}}, console.task().part(0.1, "writing"));
+      result->level.model, report.output, io::WriteOptions{compression, {}}, console.task().part(0.05, "writing"));
   if (!written) return fail(written.error());
   console.wrote(report.output);
   report.write_seconds = watch.lap();
@@ -185,7 +190,7 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
     console.note(fmt::format("{}: {}", report.output, warning));
     report.warnings.push_back(warning);
   }
-  console.result(arguments.has("--json") ? to_json(report) : table_of(report));
+  arguments.has("--json") ? console.result(to_json(report)) : console.table(table_of(report));
   if (report.shortfall.empty()) return ExitCode::done;
   console.shortfall(fmt::format("{}: {}", input, report.shortfall));
   return ExitCode::fell_short;

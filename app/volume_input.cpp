@@ -208,8 +208,8 @@ VolumeValues typed_values(std::span<const std::byte> bytes, io::VoxelType type) 
 }
 
 Result<ScannedVolume> read_in_child(const fs::path& path, const VolumeRequest& request, const Task& task) {
-  std::error_code missing;
-  if (!fs::exists(path, missing)) return fail(ErrorCode::cannot_read, "there is no such file", path.string());
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return fail(InputFile::open(path).error());
   const Result<fs::path> program = reader_program();
   if (!program) return fail(program.error());
   const TemporaryFolder folder;
@@ -249,7 +249,7 @@ Result<VolumeRequest> volume_request(const Arguments& arguments) {
   if (arguments.has("--iso")) {
     const std::string text = arguments.text("--iso");
     const std::optional<double> iso = parse_number(text);
-    if (!iso) return bad_value("--iso", text, "use a number");
+    if (!iso) return bad_value("--iso", text, "use a number, with a point before decimals");
     if (request.surface.labels) {
       return fail(ErrorCode::bad_argument, "--iso and --labels exclude each other", {}, "choose one");
     }

@@ -108,7 +108,7 @@ Result<void> finish(const Model& model, const VoxelRequest& request, Stopwatch& 
   report.peak_memory_bytes = peak_memory_bytes();
   report.write_seconds = watch.lap();
   report.total_seconds = watch.total();
-  console.result(request.json ? to_json(report) : table_of(report));
+  request.json ? console.result(to_json(report)) : console.table(table_of(report));
   return {};
 }
 

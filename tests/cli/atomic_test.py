@@ -121,6 +121,7 @@ class Interrupt(Scratch):
                     code, out, err = self.stop(number, wait, "build", "statue.ply", "-o", "x.glb", "--samples", "20000000")
                     self.assertEqual((code, out), (130, ""), err)
                     self.assertEqual(len(err.splitlines()), 1, err)
+                    self.assertRegex(err, r"^lod: interrupted while [a-z][a-z 0-9,]*, \d+ % done; nothing half done is left\n$")
                     self.assertEqual(self.files(), ["statue.ply"])
 
     def test_report_and_levels_come_together_or_not_at_all(self):

@@ -18,6 +18,7 @@ from render_test import Render, Sheet  # noqa: F401
 from report_test import Report  # noqa: F401
 from volume_test import Volumes  # noqa: F401
 from voxel_test import Voxels  # noqa: F401
+from words_test import Words  # noqa: F401
 from result_test import Json, SameBytes, Samples  # noqa: F401
 from side_files_test import SideFiles  # noqa: F401
 from streams_test import ExitCodes, Foreign, Progress, Streams  # noqa: F401

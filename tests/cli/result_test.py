@@ -82,6 +82,17 @@ class Json(Scratch):
         self.assertEqual((report["shape"]["a"]["genus"], report["shape"]["b"]["triangles"]), (0, 500))
         self.assert_error(self.lod("measure", "statue.ply", "a.ply", "--bounded", "0", code=2), "--bounded")
 
+    def test_bounds_asked_for_are_never_wider_than_without(self):
+        self.lod("simplify", "statue.ply", "-o", "a.ply", "--triangles", "500")
+        plain = self.json("measure", "statue.ply", "a.ply", "--samples", "20000")
+        for within in ("10%", "1%", "0.01%"):
+            asked = self.json("measure", "statue.ply", "a.ply", "--samples", "20000", "--bounded", within)
+            self.assertTrue(asked["is_bounded"])
+            for way in ("forward", "backward"):
+                self.assertLessEqual(asked[way]["bound"], plain[way]["bound"], (within, way))
+                self.assertGreaterEqual(asked[way]["found_max"], plain[way]["found_max"], (within, way))
+                self.assertEqual(asked[way]["mean"], plain[way]["mean"])
+
     def test_measure_pictures(self):
         self.lod("simplify", "statue.ply", "-o", "a.ply", "--triangles", "500")
         image = self.json("measure", "statue.ply", "a.ply", "--samples", "1000", "--image", "--views", "4")["image"]

@@ -1,8 +1,11 @@
 """Exit codes, what goes to which stream, the progress bar, foreign formats."""
+import fcntl
 import os
 import pty
 import resource
+import struct
 import subprocess
+import termios
 
 from support import Scratch, lod_path, run
 
@@ -44,7 +47,7 @@ class ExitCodes(Scratch):
                             ((*build, "-o", "x.glb", "--ratio", "1.5"), "between 0 and 1"),
                             ((*build, "-o", "x.glb", "--error", "5parsec"), "5parsec"),
                             ((*build, "-o", "x.glb", "--pixels", "2"), "--distances"),
-                            ((*build, "-o", "x.glb", "--compress", "zip"), "did you mean"),
+                            ((*build, "-o", "x.glb", "--compress", "zip"), "none, meshopt, draco"),
                             ((*build, "-o", "x.glb", "--threads", "-1"), "--threads"),
                             (("simplify", "statue.ply", "-o", "x.ply"), "target"),
                             (("simplify", "statue.ply", "-o", "x.ply", "--triangles", "9", "--ratio", "0.5"), "one target"),
@@ -136,8 +139,27 @@ class Streams(Scratch):
         self.assertIn("keeping 10 % of 4,000", done.stderr)
         self.assertNotIn("keeping", done.stdout)
         quiet = self.lod("simplify", "statue.ply", "-o", "b.ply", "--ratio", "0.1", "--quiet")
-        self.assertEqual(quiet.stderr, "")
+        self.assertEqual((quiet.stdout, quiet.stderr), ("", ""))
         self.assertEqual((self.folder / "a.ply").read_bytes(), (self.folder / "b.ply").read_bytes())
+
+    def test_quiet_prints_no_table_but_json_where_it_is_asked_for(self):
+        self.lod("simplify", "statue.ply", "-o", "small.ply", "--triangles", "1000")
+        for words in (("build", "statue.ply", "-o", "a.glb", "--levels", "2"), ("convert", "statue.ply", "b.glb"),
+                      ("sample", "sphere", "-o", "c.ply"), ("render", "statue.ply", "-o", "d.png", "--size", "64x48"),
+                      ("render", "a.glb", "--sheet", "-o", "e.png", "--size", "64x48"), ("info", "statue.ply"),
+                      ("measure", "statue.ply", "small.ply"), ("voxelize", "statue.ply", "-o", "f.ply", "--resolution", "16")):
+            with self.subTest(words):
+                self.assertEqual(self.lod(*words, "-q").stdout, "")
+                self.assertTrue(self.json(*words, "-q"))
+        (self.folder / "more").mkdir()
+        self.assertEqual(self.lod("build", "statue.ply", "small.ply", "-o", "more/", "--levels", "2", "-q").stdout, "")
+        self.assertIn("Usage", self.lod("help", "build", "-q").stdout)
+
+    def test_figures_of_measure_are_explained_where_they_stand(self):
+        self.lod("simplify", "statue.ply", "-o", "small.ply", "--triangles", "1000")
+        table = self.lod("measure", "statue.ply", "small.ply").stdout.split("\n\n")[0]
+        for figure in ("max", "found", "at most"):
+            self.assertRegex(table, rf"(?m)(^|; ){figure}: ")
 
     def test_table_of_build(self):
         title, *rows = self.lod("build", "statue.ply", "-o", "a.glb").stdout.splitlines()[1:]
@@ -157,13 +179,15 @@ class Streams(Scratch):
 class Progress(Scratch):
     statue_triangles = 150000
 
-    def on_terminal(self, *words):
+    def on_terminal(self, *words, columns=80, **variables):
         """Runs lod with a terminal as standard error; returns what came there."""
         try:
             ours, theirs = pty.openpty()
         except OSError as error:  # a chroot without /dev/pts
             self.skipTest(f"no terminal to be had here: {error}")
-        process = subprocess.Popen([lod_path(), *words], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=theirs)
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+        environment = {**os.environ, "TERM": "xterm", **variables}
+        process = subprocess.Popen([lod_path(), *words], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=theirs, env=environment)
         os.close(theirs)
         seen = b""
         while True:
@@ -181,8 +205,22 @@ class Progress(Scratch):
     def test_on_a_terminal_with_label_share_and_time_left(self):
         seen = self.on_terminal("build", "statue.ply", "-o", "a.glb", "--samples", "1000000")
         self.assertRegex(seen, r"[a-z]+ \[#*\.*\] +\d+ %")
-        self.assertRegex(seen, r"\d+ s left")
+        self.assertNotRegex(seen, r"\b0 s left")
         self.assertTrue(seen.endswith("\r\033[K"), "the bar is taken away at the end")
+
+    def test_forty_columns_hold_what_is_being_done(self):
+        seen = self.on_terminal("build", "statue.ply", "-o", "a.glb", "--levels", "2", columns=40)
+        lines = [line.replace("\033[K", "") for line in seen.split("\r")]
+        self.assertIn("collapsing", [line.split(" ")[0] for line in lines])
+        self.assertLess(max(map(len, lines)), 40)
+
+    def test_no_escape_codes_where_none_are_wanted(self):
+        words = ("build", "statue.ply", "-o", "a.glb", "--levels", "2")
+        self.assertEqual(self.on_terminal(*words, TERM="dumb"), "")
+        plain = self.on_terminal(*words, NO_COLOR="1")
+        self.assertIn(" %", plain)
+        self.assertNotIn("\033", plain)
+        self.assertTrue(plain.endswith(" \r"), "the bar is taken away at the end")
 
     def test_never_elsewhere_or_when_quiet(self):
         self.assertNotIn("[", self.lod("build", "statue.ply", "-o", "a.glb", "--levels", "2").stderr)
