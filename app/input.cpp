@@ -71,6 +71,7 @@ bool is_level_pattern(const fs::path& output) {
 
 Result<void> check_level(const std::string& input, std::size_t level) {
   if (level == 0) return {};
+  if (const auto there = InputFile::open(input); !there) return fail(there.error());
   const std::uint64_t levels = levels_in_file(input);
   if (levels == 1) {
     return fail(ErrorCode::bad_argument, "--level is for files with levels (MSFT_lod), this one has none", input,

@@ -374,6 +374,8 @@ std::string to_json(const SampleReport& report) {
   json["triangles"] = report.triangles;
   json["vertices"] = report.vertices;
   json["instances"] = report.instances;
+  if (report.voxels > 0) json["voxels"] = report.voxels;
+  if (report.points > 0) json["points"] = report.points;
   json["file"] = report.file;
   json["bytes"] = report.bytes;
   json["seconds"] = report.seconds;

@@ -154,6 +154,7 @@ struct SheetReport {
 struct SampleReport {
   std::string sample, file;
   std::size_t triangles = 0, vertices = 0, instances = 0;
+  std::size_t voxels = 0, points = 0;  ///< of ct and scan, which have none of the others
   std::uint64_t bytes = 0;
   double seconds = 0;
 };

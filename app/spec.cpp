@@ -27,8 +27,8 @@ VerbSpec build_spec() {
       "Makes a ladder of levels from a model and measures each level's error against the original.",
       {"INPUT...", 1, kAnyNumber, {}, Completion::file},
       {ladder_target_group(), effort_group(), view_group(), length_group(), method_group(), level_attributes_group(),
-       voxel_method_group(), volume_group(), scan_group(true), with_image_error(measuring_group(kBuildSamples)),
-       with_report(output_group(true)), general_group()},
+       voxel_method_group(), volume_group(), scan_group(true), 
+       with_image_error(measuring_group(kBuildSamples)), with_report(output_group(true)), general_group()},
       {{"lod build statue.ply -o statue.glb", "five levels in one GLB (MSFT_lod), each with half the triangles"},
        {"lod build statue.ply -o statue_LOD{level}.obj --error 0.05%,0.2%,1%",
         "a file a level, each within a measured error"},
@@ -112,8 +112,8 @@ VerbSpec voxelize_spec() {
   return {"voxelize",
           "Fills a model with voxels and writes them as cubes.",
           one_model(),
-          {resolution_group(), solid_group(), length_group(), volume_group(), scan_group(false), output_group(true),
-           general_group()},
+          {resolution_group(), solid_group(), length_group(), volume_group(), scan_group(false), 
+           output_group(true), general_group()},
           {{"lod voxelize statue.ply -o cubes.ply --resolution 32", "32 voxels along the longest side"},
            {"lod voxelize statue.glb -o cubes.glb --resolution 64 --fill nonzero", "overlapping parts are one solid"},
            {"lod voxelize statue.ply -o cubes.obj --resolution 16 --json", "figures as JSON"}},
@@ -125,8 +125,8 @@ VerbSpec boolean_spec() {
   return {"boolean",
           "Unites, intersects and subtracts models as solids of voxels.",
           {"A OPERATION B [OPERATION C]... [OUTPUT]", 3, kAnyNumber, {}, Completion::file},
-          {resolution_group(), solid_group(), level_group(), length_group(), measuring_group(kBuildSamples),
-           output_group(true), general_group()},
+          {resolution_group(), solid_group(), level_group(), length_group(), 
+           measuring_group(kBuildSamples), output_group(true), general_group()},
           {{"lod boolean sphere.glb difference statue.ply mould.ply", "the sphere without the statue: a mould"},
            {"lod boolean statue.ply union sphere.glb -o both.glb --resolution 200", "finer, as one GLB"},
            {"lod boolean sphere.glb difference statue.ply union small.ply -o out.ply --json",
@@ -164,8 +164,8 @@ VerbSpec convert_spec() {
 VerbSpec sample_spec() {
   return {
       "sample",
-      "Makes a model to try things on: the same file every time, on every machine.",
-      {"SAMPLE", 1, 1, {"sphere", "statue", "tower", "terrain"}, Completion::choices},
+      "Makes a model, volume or scan to try things on: the same file every time, on every machine.",
+      {"SAMPLE", 1, 1, {"sphere", "statue", "tower", "terrain", "ct", "scan"}, Completion::choices},
       {{"Sample",
         {{"--triangles",
           "",
@@ -176,13 +176,16 @@ VerbSpec sample_spec() {
           {},
           Completion::none},
          {"--level", "", "N", "5", "subdivisions", "sphere: an icosphere of 20 * 4^N triangles", {}, Completion::none},
-         {"--seed", "", "S", "1", "", "another statue or terrain", {}, Completion::none}}},
+         {"--points", "", "N", "50000", "points", "scan: about so many", {}, Completion::none},
+         {"--seed", "", "S", "1", "", "another statue, terrain, ct or scan", {}, Completion::none}}},
        output_group(false),
        general_group()},
       {{"lod sample statue -o statue.ply", "a closed bust of 100,000 triangles, rough like a scan"},
        {"lod sample sphere --level 6 -o sphere.glb", "an icosphere of 81,920 triangles"},
-       {"lod sample tower --triangles 50000 -o tower.glb", "a lattice tower of instanced struts and discs"}},
-      "statue and terrain are made up of noise (--seed); terrain has open borders and texture coordinates.",
+       {"lod sample ct -o ct.nrrd", "a knee as a CT volume, in Hounsfield units"}},
+      "statue and terrain are made up of noise (--seed); terrain has open borders and texture coordinates; tower is a "
+      "lattice of instanced struts and discs. ct is no mesh but a volume of 96 x 96 x 80 voxels (.nrrd; bones from 300 "
+      "on, skin at -300); scan is the statue as points with normals and colours (.ply), without its underside.",
       run_sample};
 }
 

@@ -248,6 +248,31 @@ class Samples(Scratch):
             self.lod("sample", "tower", "--triangles", str(wanted), "-o", "t.glb")
             self.assertLess(abs(self.json("info", "t.glb")["triangles"] / wanted - 1), 0.01)
 
+    def test_ct_is_a_knee_in_hounsfield_units(self):
+        self.lod("sample", "ct", "-o", "ct.nrrd")
+        bones = self.json("info", "ct.nrrd", "--iso", "300")
+        self.assertGreaterEqual(bones["components"], 4)
+        skin = self.json("info", "ct.nrrd", "--iso", "-300")
+        self.assertLess(3 * bones["volume"], skin["volume"])
+        self.lod("convert", "ct.nrrd", "ct.glb", "--iso", "-300")
+        box = self.json("info", "ct.glb")["bounds"]
+        self.assertAlmostEqual(box["max"][1] - box["min"][1], 0.12, delta=0.005)  # the leg stands, in metres
+
+    def test_scan_is_points_with_normals_and_colours(self):
+        made = self.json("sample", "scan", "--points", "5k", "-o", "scan.ply")
+        self.assertLess(abs(made["points"] / 5000 - 1), 0.1)
+        head = (self.folder / "scan.ply").read_bytes()[:600]
+        for word in (b"property float nx", b"property uchar red", b"end_header"):
+            self.assertIn(word, head)
+        info = self.json("info", "scan.ply")
+        self.assertAlmostEqual(info["bounds"]["max"][1] - info["bounds"]["min"][1], 0.68, delta=0.03)
+
+    def test_samples_that_are_no_meshes_refuse_what_they_have_not(self):
+        for words, part in ((("ct", "-o", "ct.ply"), ".nrrd"), (("scan", "-o", "scan.glb"), ".ply"), (("ct",), "ct.nrrd"),
+                            (("ct", "-o", "ct.nrrd", "--triangles", "9"), "--triangles"), (("scan", "-o", "s.ply", "--level", "2"), "--level"),
+                            (("statue", "-o", "s.ply", "--points", "9"), "--points")):
+            self.assert_error(self.lod("sample", *words, code=2), part)
+
     def test_seed_and_repetition(self):
         def made(*words):
             self.lod("sample", "statue", "--triangles", "500", "-o", "s.ply", *words)
