@@ -72,8 +72,10 @@ Result<ExitCode> run_boolean(const Arguments& arguments, Console& console) {
   Stopwatch watch;
   VoxelReport report;
   std::vector<Model> models;
+  VolumeRequest reading;
+  reading.up = up_axis(arguments);
   for (const std::string& input : asked->inputs) {
-    Result<Model> model = read_input(input, console, console.task().part(0.2, "reading"));
+    Result<Model> model = read_input(input, console, console.task().part(0.2, "reading"), {}, reading);
     if (!model) return fail(model.error());
     if (const Result<void> kept = io::check_replaced(*model, request.output); !kept) return fail(kept.error());
     apply_unit(*model, *lengths);

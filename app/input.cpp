@@ -36,6 +36,7 @@ Result<Model> read_input(const fs::path& path, const Console& console, Task task
   Result<Model> model = read();
   if (!model && !volume.read.raw) return fail(io::told_by_content(model.error(), path));
   if (!model) return model;
+  if (const Result<void> upright = apply_up(*model, volume.up, path); !upright) return fail(upright.error());
   for (const std::string& warning : model->warnings) console.note(fmt::format("{}: {}", path.string(), warning));
   return model;
 }

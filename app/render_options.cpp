@@ -58,10 +58,13 @@ Result<void> read_look_at(const Arguments& arguments, CameraChoice& choice) {
   if (choice.eye && choice.target && *choice.eye == *choice.target) {
     return fail(ErrorCode::bad_argument, "--eye and --target are the same point", {}, "move one of them");
   }
-  const Result<Vec3d> up = vector(arguments, "--up");
+  const std::string axis = arguments.text("--up");  // the names that other verbs have for it
+  const Result<Vec3d> up = axis == "y"   ? Result<Vec3d>(Vec3d{0, 1, 0})
+                           : axis == "z" ? Result<Vec3d>(Vec3d{0, 0, 1})
+                                         : vector(arguments, "--up");
   if (!up) return fail(up.error());
   if (*up == Vec3d{}) {
-    return fail(ErrorCode::bad_argument, "--up is no direction", {}, "use --up 0,1,0, or --up 0,0,1 for z up");
+    return fail(ErrorCode::bad_argument, "--up is no direction", {}, "use --up y or --up z");
   }
   choice.up = *up;
   return {};
@@ -118,7 +121,7 @@ OptionGroup camera_group() {
         "--eye looks here (without: at the middle of the model)",
         {},
         Completion::none},
-       {"--up", "", "X,Y,Z", "0,1,0", "", "what is up; 0,0,1 for models with z up", {}, Completion::none},
+       {"--up", "", "AXIS", "0,1,0", "", "what is up: y, z or any direction", {}, Completion::none},
        {"--fov", "", "A", "45", "degrees", "vertical field of view", {}, Completion::none},
        {"--ortho", "", "", "", "", "without perspective", {}, Completion::none}}};
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/attributes.h"
+#include "app/axes.h"
 #include "app/bake_run.h"
 #include "app/influence.h"
 #include "app/render_options.h"
@@ -27,7 +28,7 @@ VerbSpec build_spec() {
       "Makes a ladder of levels from a model and measures each level's error against the original.",
       {"INPUT...", 1, kAnyNumber, {}, Completion::file},
       {ladder_target_group(), effort_group(), view_group(), length_group(), method_group(), level_attributes_group(),
-       voxel_method_group(), volume_group(), scan_group(true), 
+       voxel_method_group(), volume_group(), scan_group(true), axes_group(),
        with_image_error(measuring_group(kBuildSamples)), with_report(output_group(true)), general_group()},
       {{"lod build statue.ply -o statue.glb", "five levels in one GLB (MSFT_lod), each with half the triangles"},
        {"lod build statue.ply -o statue_LOD{level}.obj --error 0.05%,0.2%,1%",
@@ -46,7 +47,7 @@ VerbSpec simplify_spec() {
           one_model(),
           {single_target_group(), effort_group(), length_group(), method_group(), level_attributes_group(),
            input_level_group("which level of a ladder in a glTF file is the input; 0 = its original"), volume_group(),
-           scan_group(true), measuring_group(kBuildSamples), output_group(true), general_group()},
+           scan_group(true), axes_group(), measuring_group(kBuildSamples), output_group(true), general_group()},
           {{"lod simplify statue.ply -o small.ply --triangles 5000", "at most 5,000 triangles"},
            {"lod simplify statue.ply -o small.glb --error 0.1%", "as coarse as 0.1 % of the diagonal allows"},
            {"lod simplify statue.ply -o small.obj --ratio 10% --json", "keep a tenth, figures as JSON"}},
@@ -96,7 +97,7 @@ VerbSpec remesh_spec() {
       "Makes a new closed surface of even triangles from a model, by way of voxels.",
       one_model(),
       {remesh_target_group(), solid_group(), level_group(), baked_group(), length_group(), volume_group(),
-       scan_group(false), measuring_group(kBuildSamples), output_group(true), general_group()},
+       scan_group(false), axes_group(), measuring_group(kBuildSamples), output_group(true), general_group()},
       {{"lod remesh statue.ply -o even.ply", "128 voxels along the longest side"},
        {"lod remesh statue.glb -o fine.glb --resolution 200", "a finer one"},
        {"lod remesh statue.ply -o few.ply --triangles 2000 --then-collapse",
@@ -112,7 +113,7 @@ VerbSpec voxelize_spec() {
   return {"voxelize",
           "Fills a model with voxels and writes them as cubes.",
           one_model(),
-          {resolution_group(), solid_group(), length_group(), volume_group(), scan_group(false), 
+          {resolution_group(), solid_group(), length_group(), volume_group(), scan_group(false), axes_group(),
            output_group(true), general_group()},
           {{"lod voxelize statue.ply -o cubes.ply --resolution 32", "32 voxels along the longest side"},
            {"lod voxelize statue.glb -o cubes.glb --resolution 64 --fill nonzero", "overlapping parts are one solid"},
@@ -125,7 +126,7 @@ VerbSpec boolean_spec() {
   return {"boolean",
           "Unites, intersects and subtracts models as solids of voxels.",
           {"A OPERATION B [OPERATION C]... [OUTPUT]", 3, kAnyNumber, {}, Completion::file},
-          {resolution_group(), solid_group(), level_group(), length_group(), 
+          {resolution_group(), solid_group(), level_group(), length_group(), axes_group(),
            measuring_group(kBuildSamples), output_group(true), general_group()},
           {{"lod boolean sphere.glb difference statue.ply mould.ply", "the sphere without the statue: a mould"},
            {"lod boolean statue.ply union sphere.glb -o both.glb --resolution 200", "finer, as one GLB"},
@@ -153,7 +154,7 @@ VerbSpec convert_spec() {
           "Writes a model in another format.",
           {"INPUT [OUTPUT]", 1, 2, {}, Completion::file},
           {input_level_group("write this level of a ladder in a glTF file alone; 0 = its original"), unit_group(),
-           volume_group(), scan_group(true), output_group(true), general_group()},
+           volume_group(), scan_group(true), axes_group(), output_group(true), general_group()},
           {{"lod convert statue.ply statue.stl", "by the names' endings"},
            {"lod convert tower.glb -o tower.ply", "instances are flattened where the format has none"},
            {"lod convert statue.glb -o statue_LOD{level}.obj", "each level of a ladder as a file of its own"}},

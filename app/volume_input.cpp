@@ -243,6 +243,7 @@ Result<ScannedVolume> read_in_child(const fs::path& path, const VolumeRequest& r
 
 Result<VolumeRequest> volume_request(const Arguments& arguments) {
   VolumeRequest request;
+  request.up = up_axis(arguments);
   request.read.series = arguments.text("--series");
   request.surface.labels = arguments.has("--labels");
   request.asked = arguments.has("--iso") || arguments.has("--raw") || request.surface.labels;

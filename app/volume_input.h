@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "app/axes.h"
 #include "app/command_line.h"
 #include "app/shared_options.h"
 #include "app/spec.h"
@@ -26,6 +27,7 @@ struct VolumeRequest {
   chain::ScanSurfaceOptions scan;
   std::vector<LengthArgument> close;  ///< --close for a scan; empty = by the scan
   LengthRules lengths;                ///< --unit: what a scan's numbers are
+  UpAxis up = UpAxis::unsaid;         ///< --up
   bool asked = false;                 ///< by --iso, --labels or --raw: whatever the input is called, it is a volume
 };
 

@@ -9,6 +9,7 @@ import unittest
 
 import support
 from atomic_test import Atomic, Interrupt  # noqa: F401
+from axes_test import Axes  # noqa: F401
 from batch_test import Batch, Names  # noqa: F401
 from control_test import Control  # noqa: F401
 from help_test import Help, Shells  # noqa: F401
