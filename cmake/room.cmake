@@ -11,19 +11,6 @@ target_compile_options(lodestone_options INTERFACE
   -ffp-contract=off)
 target_include_directories(lodestone_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
 
-# Where LODESTONE_PCH is on, what nearly every file includes is parsed once a target. Files still include what they use:
-# the preset `clang` builds without.
-function(lodestone_precompile target)
-  if(NOT LODESTONE_PCH)
-    return()
-  endif()
-  target_precompile_headers(${target} PRIVATE
-    <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <span> <string> <string_view>
-    <utility> <variant> <vector> ${ARGN})
-  # For ccache, which must see that a precompiled header is used.
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
-endfunction()
-
 # lodestone_room(name DEPENDS room... [LIBRARIES target...] [ALONE file...]): target lodestone_<name> from
 # lodestone/<name>/*.cpp. ALONE: files with private names that another has too; where a preset joins files to compile them
 # faster (CMAKE_UNITY_BUILD) these are left by themselves.
@@ -39,9 +26,6 @@ function(lodestone_room name)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:lodestone_options> ${ARG_LIBRARIES})
     target_compile_definitions(${target} PRIVATE ${ARG_DEFINITIONS})
     set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-    if("fmt::fmt" IN_LIST ARG_LIBRARIES)
-      lodestone_precompile(${target} <fmt/format.h> <tl/expected.hpp>)
-    endif()
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
@@ -74,7 +58,6 @@ function(lodestone_tests room)
                         ${ARG_LIBRARIES})
   list(TRANSFORM ARG_ALONE PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/${room}/)
   set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-  lodestone_precompile(${room}_tests <gtest/gtest.h> <tl/expected.hpp>)
   add_dependencies(unit_tests ${room}_tests)
   set(labels unit)
   if(ARG_THREADS)
