@@ -25,7 +25,9 @@ using Json = nlohmann::ordered_json;
 using ByteSpan = std::span<const std::byte>;
 
 inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
-inline constexpr const char* kMeshopt = "EXT_meshopt_compression";
+inline constexpr const char* kMeshopt = "EXT_meshopt_compression";  // as we write it
+/// The same extension under both its names; the newer knows more codings.
+inline constexpr const char* kMeshoptNames[] = {"KHR_meshopt_compression", kMeshopt};
 inline constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 inline constexpr const char* kMsftLod = "MSFT_lod";
 inline constexpr const char* kCoverage = "MSFT_screencoverage";
@@ -60,8 +62,6 @@ Result<bool> numbers_member(const Json& object, std::string_view key, std::span<
 struct View {
   ByteSpan bytes;
   std::size_t stride = 0;  ///< 0: tight
-  bool decoded = false;    ///< `bytes` were decoded from EXT_meshopt_compression
-  ByteSpan compressed;     ///< then: what the file held
 };
 
 struct ExternalImage {
@@ -76,7 +76,7 @@ struct Document::Data {
   std::vector<std::filesystem::path> files;                 ///< buffers and images in files of their own
   Json json;                                                ///< as in the file, but data URIs of buffers removed
   std::vector<std::shared_ptr<const std::string>> storage;  ///< owns all bytes
-  std::vector<ByteSpan> buffers;                            ///< one a JSON buffer; empty for fallback buffers
+  std::vector<ByteSpan> buffers;                            ///< one a JSON buffer; null where nothing needs its bytes
   std::vector<View> views;                                  ///< one a JSON bufferView
   std::vector<ExternalImage> images;                        ///< files found beside the .gltf
   std::vector<std::size_t> instance_nodes;                  ///< node of each instance of the Model
@@ -104,6 +104,13 @@ tl::unexpected<Error> unfolds_too_far(const Document::Data& data, std::string_vi
 Result<std::unique_ptr<Document::Data>> load_document(std::string bytes, std::string name,
                                                       const std::filesystem::path& path, const ReadOptions& options,
                                                       std::vector<std::string>& warnings, const Task& task);
+
+/// The meshopt extension of a buffer or a buffer view, under either name; null if it has none.
+const Json* meshopt_of(const Json& holder);
+/// Buffers that only stand in for what meshopt compressed (tagged as that or not): their bytes may be missing.
+std::vector<bool> unread_buffers(const Json& json);
+/// Fills data.views from data.buffers (gltf_views.cpp).
+Result<void> load_views(Document::Data& data, const Task& task);
 
 /// Takes out MSFT_lod with the nodes that it names, their meshes and what only these use, as far as they are the last
 /// of their kinds (as our writer leaves them): the indices of all others stay.

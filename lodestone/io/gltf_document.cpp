@@ -1,5 +1,5 @@
-// From a file's bytes to a document: container, JSON, buffers, external images, buffer views. Every count is checked
-// against the bytes that are there.
+// From a file's bytes to a document: container, JSON, buffers, external images. Every count is checked against the
+// bytes that are there.
 #include "lodestone/io/gltf_document.h"
 
 #include <fmt/format.h>
@@ -10,7 +10,6 @@
 #include "lodestone/base/file.h"
 #include "lodestone/io/gltf_detail.h"
 #include "lodestone/io/image_file_detail.h"
-#include "lodestone/io/meshopt_detail.h"
 #include "lodestone/io/uri_detail.h"
 
 namespace lodestone::io {
@@ -45,7 +44,6 @@ struct Loader {
   bool has_folder = false;
   std::vector<std::string>& warnings;
   Task task;
-  Budget unfolded;                        // bytes that compressed views may unfold to
   std::map<std::string, ByteSpan> files;  // external files already read
   std::string_view bin;
   bool has_bin = false;
@@ -99,13 +97,6 @@ Result<ByteSpan> external_file(Loader& loader, const std::string& uri, std::uint
   return loader.files[path->string()] = keep(loader.data, std::move(*bytes));
 }
 
-bool is_fallback(const Json& buffer) {
-  const Json* extensions = member(buffer, "extensions");
-  const Json* meshopt = extensions != nullptr ? member(*extensions, kMeshopt) : nullptr;
-  const Json* fallback = meshopt != nullptr ? member(*meshopt, "fallback") : nullptr;
-  return fallback != nullptr && fallback->is_boolean() && fallback->get<bool>();
-}
-
 Result<ByteSpan> load_buffer(Loader& loader, std::size_t index, Json& buffer) {
   const std::string where = place(loader.data, "buffer", index);
   const Result<std::uint64_t> length = uint_member(buffer, "byteLength", 0, where);
@@ -113,14 +104,8 @@ Result<ByteSpan> load_buffer(Loader& loader, std::size_t index, Json& buffer) {
   const std::string uri = string_member(buffer, "uri");
   ByteSpan bytes;
   if (uri.empty()) {
-    if (index == 0 && loader.has_bin) {
-      bytes = as_bytes_of(loader.bin);
-    } else if (is_fallback(buffer)) {
-      return bytes;
-    } else {
-      return fail(ErrorCode::bad_format, "has no uri, and no binary chunk stands for it", where,
-                  "is the file cut off?");
-    }
+    if (index != 0 || !loader.has_bin) return bytes;  // legal; a view that needs it is an error
+    bytes = as_bytes_of(loader.bin);
   } else if (is_data_uri(uri)) {
     Result<DataUri> decoded = decode_data_uri(uri, where);
     if (!decoded) return fail(decoded.error());
@@ -138,11 +123,27 @@ Result<ByteSpan> load_buffer(Loader& loader, std::size_t index, Json& buffer) {
   return bytes.first(static_cast<std::size_t>(*length));
 }
 
+// A fallback is not read, and may be missing; but one that is there belongs to the model and must not be overwritten.
+void skip_buffer(Loader& loader, Json& buffer) {
+  const std::string uri = string_member(buffer, "uri");
+  if (is_data_uri(uri)) buffer.erase("uri");
+  if (uri.empty() || is_data_uri(uri) || !loader.has_folder) return;
+  const Result<std::filesystem::path> path = resolve_uri(loader.folder, uri, {});
+  std::error_code none;
+  if (path && std::filesystem::exists(*path, none)) loader.data.files.push_back(*path);
+}
+
 Result<void> load_buffers(Loader& loader) {
   const auto buffers = loader.data.json.find("buffers");
   if (buffers == loader.data.json.end() || !buffers->is_array()) return {};
+  const std::vector<bool> unread = unread_buffers(loader.data.json);
   for (std::size_t i = 0; i < buffers->size(); ++i) {
     if (loader.task.cancelled()) return cancelled_error("reading");
+    if (unread[i]) {
+      skip_buffer(loader, (*buffers)[i]);
+      loader.data.buffers.emplace_back();
+      continue;
+    }
     const Result<ByteSpan> bytes = load_buffer(loader, i, (*buffers)[i]);
     if (!bytes) return fail(bytes.error());
     loader.data.buffers.push_back(*bytes);
@@ -171,100 +172,6 @@ Result<void> load_images(Loader& loader) {
   return {};
 }
 
-// A range of a buffer as a bufferView or its meshopt extension names it.
-Result<ByteSpan> buffer_range(const Loader& loader, const Json& range, const std::string& where) {
-  const auto& buffers = loader.data.buffers;
-  const Result<std::size_t> buffer = index_member(range, "buffer", buffers.size(), "buffers", where);
-  if (!buffer) return fail(buffer.error());
-  const Result<std::uint64_t> offset = uint_member(range, "byteOffset", 0, where);
-  if (!offset) return fail(offset.error());
-  const Result<std::uint64_t> length = uint_member(range, "byteLength", 0, where);
-  if (!length) return fail(length.error());
-  const ByteSpan bytes = buffers[*buffer];
-  if (*offset > bytes.size() || *length > bytes.size() - *offset) {
-    return fail(
-        ErrorCode::bad_format,
-        fmt::format("bytes {} to {} are named, buffer {} has {}", *offset, *offset + *length, *buffer, bytes.size()),
-        where, "is the file cut off?");
-  }
-  return bytes.subspan(static_cast<std::size_t>(*offset), static_cast<std::size_t>(*length));
-}
-
-Result<View> decode_view(Loader& loader, const Json& meshopt, std::size_t stride, const std::string& where) {
-  View view;
-  const Result<ByteSpan> range = buffer_range(loader, meshopt, where);
-  if (!range) return fail(range.error());
-  const Result<std::uint64_t> count = uint_member(meshopt, "count", 0, where);
-  if (!count) return fail(count.error());
-  const Result<std::uint64_t> size = uint_member(meshopt, "byteStride", 0, where);
-  if (!size) return fail(size.error());
-  const std::string mode = string_member(meshopt, "mode"), filter = string_member(meshopt, "filter");
-  MeshoptMode m = MeshoptMode::attributes;
-  if (mode == "TRIANGLES") {
-    m = MeshoptMode::triangles;
-  } else if (mode == "INDICES") {
-    m = MeshoptMode::indices;
-  } else if (mode != "ATTRIBUTES") {
-    return fail(ErrorCode::bad_format, fmt::format("{} mode '{}' is unknown", kMeshopt, mode), where);
-  }
-  MeshoptFilter f = MeshoptFilter::none;
-  if (filter == "OCTAHEDRAL") {
-    f = MeshoptFilter::octahedral;
-  } else if (filter == "QUATERNION") {
-    f = MeshoptFilter::quaternion;
-  } else if (filter == "EXPONENTIAL") {
-    f = MeshoptFilter::exponential;
-  } else if (!filter.empty() && filter != "NONE") {
-    return fail(ErrorCode::bad_format, fmt::format("{} filter '{}' is unknown", kMeshopt, filter), where);
-  }
-  Result<std::string> bytes =
-      decode_meshopt(*range, static_cast<std::size_t>(*count), static_cast<std::size_t>(*size), m, f, where);
-  if (!bytes) return fail(bytes.error());
-  if (!loader.unfolded.take(bytes->size())) {
-    return unfolds_too_far(loader.data, "the compressed views", where);
-  }
-  loader.data.storage.push_back(std::make_shared<const std::string>(std::move(*bytes)));
-  view.bytes = as_bytes_of(*loader.data.storage.back());
-  view.stride = stride;
-  view.decoded = true;
-  view.compressed = *range;
-  return view;
-}
-
-Result<View> load_view(Loader& loader, const Json& json, std::size_t index) {
-  const std::string where = place(loader.data, "bufferView", index);
-  const Result<std::uint64_t> stride = uint_member(json, "byteStride", 0, where);
-  if (!stride) return fail(stride.error());
-  if (*stride > 65536) return fail(ErrorCode::bad_format, fmt::format("byteStride is {}, at most 252", *stride), where);
-  const Json* extensions = member(json, "extensions");
-  const Json* meshopt = extensions != nullptr ? member(*extensions, kMeshopt) : nullptr;
-  if (meshopt != nullptr) {
-    Result<std::size_t> buffer = index_member(json, "buffer", loader.data.buffers.size(), "buffers", where);
-    if (!buffer) return fail(buffer.error());
-    const bool has_fallback = !loader.data.buffers[*buffer].empty();
-    if (has_meshopt() || !has_fallback) return decode_view(loader, *meshopt, static_cast<std::size_t>(*stride), where);
-  }
-  const Result<ByteSpan> bytes = buffer_range(loader, json, where);
-  if (!bytes) return fail(bytes.error());
-  View view;
-  view.bytes = *bytes;
-  view.stride = static_cast<std::size_t>(*stride);
-  return view;
-}
-
-Result<void> load_views(Loader& loader) {
-  const Json& views = array_member(loader.data.json, "bufferViews");
-  loader.unfolded = unfold_budget(loader.data.file_bytes);
-  loader.data.views.reserve(views.size());
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (loader.task.cancelled()) return cancelled_error("reading");
-    Result<View> view = load_view(loader, views[i], i);
-    if (!view) return fail(view.error());
-    loader.data.views.push_back(std::move(*view));
-  }
-  return {};
-}
-
 // Nobody names it: it keeps its index and four bytes.
 void empty_view(Document::Data& data, std::size_t view) {
   static constexpr std::array<std::byte, 4> kNothing{};
@@ -284,7 +191,7 @@ Result<std::unique_ptr<Document::Data>> load_document(std::string bytes, std::st
   if (bytes.empty()) return fail(ErrorCode::bad_format, "the file is empty", data->name, "export the model again");
   keep(*data, std::move(bytes));
   std::string_view text = *data->storage.front();
-  Loader loader{*data, path.parent_path(), !path.empty(), warnings, task, {}, {}, {}, false};
+  Loader loader{*data, path.parent_path(), !path.empty(), warnings, task, {}, {}, false};
   if (is_glb(text)) {
     const Result<GlbParts> parts = split_glb(text, data->name, warnings);
     if (!parts) return fail(parts.error());
@@ -301,7 +208,7 @@ Result<std::unique_ptr<Document::Data>> load_document(std::string bytes, std::st
   if (!options.levels) drop_levels(data->json);
   if (const auto good = load_buffers(loader); !good) return fail(good.error());
   if (const auto good = load_images(loader); !good) return fail(good.error());
-  if (const auto good = load_views(loader); !good) return fail(good.error());
+  if (const auto good = load_views(*data, task); !good) return fail(good.error());
   for (const std::size_t view : emptied) {
     if (view < data->views.size()) empty_view(*data, view);
   }

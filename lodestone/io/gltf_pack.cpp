@@ -98,8 +98,16 @@ void GltfPack::set_view(std::size_t view, std::size_t level, std::string_view by
   const std::size_t offset = append(level, bytes);
   Json& json = json_["bufferViews"][view];
   json["byteLength"] = bytes.size();
-  if (json.contains("extensions")) {
-    json["extensions"].erase(kMeshopt);
+  if (const Json* extensions = member(json, "extensions"); extensions != nullptr && extensions->is_object()) {
+    Json kept = Json::object();
+    for (const auto& [name, value] : extensions->items()) {
+      if (member(value, "buffer") == nullptr) {
+        kept[name] = value;
+      } else {
+        moved_.insert(name);
+      }
+    }
+    json["extensions"] = std::move(kept);
     if (json["extensions"].empty()) json.erase("extensions");
   }
   places_.push_back({view, level, offset, false});

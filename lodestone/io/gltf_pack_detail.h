@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,10 +26,14 @@ class GltfPack {
   std::size_t add_indices(std::size_t level, const std::vector<std::uint32_t>& corners, std::size_t vertices);
   /// Any bytes, never compressed (images, Draco streams, views of the original).
   std::size_t add_bytes(std::size_t level, std::string_view bytes);
-  /// The bytes of an existing view, which keeps its index and properties.
+  /// The bytes of an existing view, which keeps its index and properties, but extensions that say where its bytes lie
+  /// (compression): these would name a place in a buffer that is no more.
   void set_view(std::size_t view, std::size_t level, std::string_view bytes);
   /// An existing view that nothing needs any more: its index is used for the next new one.
   void free_view(std::size_t view) { free_.push_back(view); }
+
+  /// Names of the extensions that set_view() took out.
+  const std::set<std::string>& moved_extensions() const { return moved_; }
 
   std::size_t add_accessor(Json accessor);
   /// The accessor whose index `index` holds; null if it is null or no index.
@@ -54,6 +59,7 @@ class GltfPack {
   std::vector<std::uint64_t> sizes_;  // a level, from then on
   std::vector<Place> places_;
   std::vector<std::size_t> free_;
+  std::set<std::string> moved_;
   std::uint64_t fallback_bytes_ = 0;
 };
 

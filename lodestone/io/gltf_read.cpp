@@ -25,7 +25,8 @@ constexpr std::string_view kKnownExtensions[] = {"KHR_mesh_quantization",
                                                  "KHR_materials_unlit",
                                                  "KHR_lights_punctual",
                                                  kDraco,
-                                                 kMeshopt,
+                                                 kMeshoptNames[0],
+                                                 kMeshoptNames[1],
                                                  kInstancing,
                                                  kMsftLod};
 

@@ -15,8 +15,8 @@ namespace lodestone::io {
 /// (triangles, strips, fans); points and lines stay in the document only. Vertices are welded exactly by position
 /// across the primitives of a mesh. Instances: nodes with a mesh under the default scene (else the first scene, else
 /// all nodes without a parent), depth first; skins and morph targets are not applied. KHR_draco_mesh_compression,
-/// EXT_meshopt_compression, KHR_mesh_quantization and EXT_mesh_gpu_instancing are decoded. UVs start at the top
-/// (Model::uv_origin_top). Memory: the file, the meshes, and one mesh more while it is welded.
+/// KHR_meshopt_compression, EXT_meshopt_compression, KHR_mesh_quantization and EXT_mesh_gpu_instancing are decoded. UVs
+/// start at the top (Model::uv_origin_top). Memory: the file, the meshes, and one mesh more while it is welded.
 /// Errors: cannot_read, bad_format (naming accessor, buffer view, primitive or node), unsupported (glTF 1, an extension
 /// that this build lacks), empty (no triangle drawn), out_of_memory, cancelled.
 Result<Model> read_gltf(const std::filesystem::path& path, const ReadOptions& options = {}, Task task = {});

@@ -10,6 +10,7 @@
 #include <map>
 #include <new>
 #include <optional>
+#include <set>
 #include <span>
 
 #include "lodestone/base/file.h"
@@ -137,9 +138,14 @@ void begin_from_document(Writer& w) {
   repair_accessors(*w.document, w.json);
   keep_views(w);
   keep_images(w);
-  for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
-    unlist_extension(w.json, key, kDraco);
-    unlist_extension(w.json, key, kMeshopt);
+  std::set<std::string> gone{kDraco, kMeshoptNames[0], kMeshoptNames[1]};
+  for (const std::string& name : w.pack->moved_extensions()) {
+    if (!gone.insert(name).second) continue;
+    w.report.warnings.push_back(
+        fmt::format("{} said where bytes of the file lay, and they have moved: left out", name));
+  }
+  for (const std::string& name : gone) {
+    for (const char* key : {"extensionsUsed", "extensionsRequired"}) unlist_extension(w.json, key, name);
   }
 }
 

@@ -12,38 +12,25 @@ namespace lodestone::io {
 
 namespace {
 
-// A block of 256 elements takes at least 4 bytes for each of its byte columns, a triangle at least one byte for its 12:
-// nothing unfolds to more than this many times its size.
-constexpr std::size_t kMaxRatio = 64;
+constexpr unsigned char kVersion1 = 0xa1;
 
 }  // namespace
 
 bool has_meshopt() { return true; }
 
-Result<std::string> decode_meshopt(std::span<const std::byte> compressed, std::size_t count, std::size_t stride,
-                                   MeshoptMode mode, MeshoptFilter filter, const std::string& where) {
-  const auto bad = [&](std::string what) { return fail(ErrorCode::bad_format, std::move(what), where); };
-  const bool attributes = mode == MeshoptMode::attributes;
-  if (attributes ? stride == 0 || stride % 4 != 0 || stride > 256 : stride != 2 && stride != 4) {
-    return bad(fmt::format("byteStride {} is not possible for {}", stride, attributes ? "ATTRIBUTES" : "indices"));
-  }
-  if (mode == MeshoptMode::triangles && count % 3 != 0) {
-    return bad(fmt::format("count {} is no multiple of 3", count));
-  }
-  if (count > compressed.size() * kMaxRatio || count * stride > compressed.size() * kMaxRatio) {
-    return bad(
-        fmt::format("{} elements of {} bytes cannot be in {} compressed bytes", count, stride, compressed.size()));
-  }
-  const bool oct = filter == MeshoptFilter::octahedral, quat = filter == MeshoptFilter::quaternion;
-  if (filter != MeshoptFilter::none && (!attributes || (oct && stride != 4 && stride != 8) || (quat && stride != 8))) {
-    return bad(fmt::format("the filter is not possible for byteStride {}", stride));
-  }
+Result<std::string> decode_meshopt(std::span<const std::byte> compressed, const MeshoptCoding& coding,
+                                   const std::string& where) {
+  const auto [mode, filter, count, stride] = coding;
   std::string out(count * stride, '\0');
   const auto* bytes = reinterpret_cast<const unsigned char*>(compressed.data());
   int problem = 0;
   switch (mode) {
     case MeshoptMode::attributes:
-      problem = meshopt_decodeVertexBuffer(out.data(), count, stride, bytes, compressed.size());
+      if (!compressed.empty() && bytes[0] == kVersion1) {
+        problem = decode_meshopt_version_1(compressed, count, stride, out.data()) ? 0 : -1;
+      } else {
+        problem = meshopt_decodeVertexBuffer(out.data(), count, stride, bytes, compressed.size());
+      }
       break;
     case MeshoptMode::triangles:
       problem = meshopt_decodeIndexBuffer(out.data(), count, stride, bytes, compressed.size());
@@ -52,10 +39,26 @@ Result<std::string> decode_meshopt(std::span<const std::byte> compressed, std::s
       problem = meshopt_decodeIndexSequence(out.data(), count, stride, bytes, compressed.size());
       break;
   }
-  if (problem != 0) return bad(fmt::format("the compressed data is broken (code {})", problem));
-  if (oct) meshopt_decodeFilterOct(out.data(), count, stride);
-  if (quat) meshopt_decodeFilterQuat(out.data(), count, stride);
-  if (filter == MeshoptFilter::exponential) meshopt_decodeFilterExp(out.data(), count, stride);
+  if (problem != 0) {
+    return fail(ErrorCode::bad_format, fmt::format("the compressed data is broken (code {})", problem), where,
+                "export the model again");
+  }
+  switch (filter) {
+    case MeshoptFilter::none:
+      break;
+    case MeshoptFilter::octahedral:
+      meshopt_decodeFilterOct(out.data(), count, stride);
+      break;
+    case MeshoptFilter::quaternion:
+      meshopt_decodeFilterQuat(out.data(), count, stride);
+      break;
+    case MeshoptFilter::exponential:
+      meshopt_decodeFilterExp(out.data(), count, stride);
+      break;
+    case MeshoptFilter::color:
+      decode_meshopt_colors(out.data(), count, stride);
+      break;
+  }
   return out;
 }
 
@@ -81,9 +84,8 @@ std::string encode_meshopt_triangles(std::span<const std::uint32_t> indices, std
 
 bool has_meshopt() { return false; }
 
-Result<std::string> decode_meshopt(std::span<const std::byte>, std::size_t, std::size_t, MeshoptMode, MeshoptFilter,
-                                   const std::string& where) {
-  return fail(ErrorCode::unsupported, "EXT_meshopt_compression is not in this build", where,
+Result<std::string> decode_meshopt(std::span<const std::byte>, const MeshoptCoding&, const std::string& where) {
+  return fail(ErrorCode::unsupported, "meshopt compression is not in this build", where,
               "build with -DLODESTONE_WITH_MESHOPT=ON (Debian: libmeshoptimizer-dev)");
 }
 
