@@ -87,28 +87,6 @@ double load(const char* at) {
   return static_cast<double>(value);
 }
 
-void store_number(char* at, double value, ComponentType type, bool normalized) {
-  if (type == ComponentType::float32) {
-    constexpr double kMost = static_cast<double>(std::numeric_limits<float>::max());
-    return store<float>(at, std::clamp(value, -kMost, kMost));
-  }
-  const double most = largest_of(type);
-  const bool is_signed = type == ComponentType::int8 || type == ComponentType::int16;
-  double whole = normalized ? value * most : value;
-  const double least = !is_signed ? 0.0 : normalized ? -most : -most - 1;
-  whole = std::clamp(whole < 0 ? std::ceil(whole - 0.5) : std::floor(whole + 0.5), least, most);
-  switch (type) {
-    case ComponentType::int8:
-      return store<std::int8_t>(at, whole);
-    case ComponentType::uint8:
-      return store<std::uint8_t>(at, whole);
-    case ComponentType::int16:
-      return store<std::int16_t>(at, whole);
-    default:
-      return store<std::uint16_t>(at, whole);
-  }
-}
-
 double stored_number(const char* at, ComponentType type) {
   switch (type) {
     case ComponentType::int8:
@@ -122,24 +100,6 @@ double stored_number(const char* at, ComponentType type) {
     default:
       return load<float>(at);
   }
-}
-
-// Sum exactly one after rounding to the stored type: the largest takes the rest.
-void sum_to_one(std::vector<double>& weights, ComponentType type) {
-  double sum = 0;
-  for (const double w : weights) sum += w;
-  if (!(std::abs(sum - 1) < 0.02)) return;  // the file had it otherwise
-  const double most = largest_of(type);
-  std::size_t largest = 0;
-  double rounded = 0;
-  for (std::size_t k = 0; k < weights.size(); ++k) {
-    weights[k] /= sum;
-    weights[k] = type == ComponentType::float32 ? static_cast<double>(static_cast<float>(weights[k]))
-                                                : std::floor(weights[k] * most + 0.5) / most;
-    if (weights[k] > weights[largest]) largest = k;
-    rounded += weights[k];
-  }
-  weights[largest] += 1 - rounded;
 }
 
 // A wedge's weights in one set, settled together with those of all its sets.
@@ -206,6 +166,49 @@ bool needs_care(const AttributeStream& stream, const AttributePlan& plan) {
 }
 
 }  // namespace
+
+void store_number(char* at, double value, ComponentType type, bool normalized) {
+  if (type == ComponentType::float32) {
+    constexpr double kMost = static_cast<double>(std::numeric_limits<float>::max());
+    return store<float>(at, std::clamp(value, -kMost, kMost));
+  }
+  const double most = largest_of(type);
+  const bool is_signed = type == ComponentType::int8 || type == ComponentType::int16;
+  double whole = normalized ? value * most : value;
+  const double least = !is_signed ? 0.0 : normalized ? -most : -most - 1;
+  whole = std::clamp(whole < 0 ? std::ceil(whole - 0.5) : std::floor(whole + 0.5), least, most);
+  switch (type) {
+    case ComponentType::int8:
+      return store<std::int8_t>(at, whole);
+    case ComponentType::uint8:
+      return store<std::uint8_t>(at, whole);
+    case ComponentType::int16:
+      return store<std::int16_t>(at, whole);
+    default:
+      return store<std::uint16_t>(at, whole);
+  }
+}
+
+void sum_to_one(std::span<double> weights, ComponentType type) {
+  double sum = 0;
+  for (const double w : weights) sum += w;
+  if (!(sum > 0)) {
+    std::fill(weights.begin(), weights.end(), 0.0);
+    weights.front() = 1;
+    return;
+  }
+  const double most = largest_of(type);
+  std::size_t largest = 0;
+  double rounded = 0;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    weights[k] /= sum;
+    weights[k] = type == ComponentType::float32 ? static_cast<double>(static_cast<float>(weights[k]))
+                                                : std::floor(weights[k] * most + 0.5) / most;
+    if (weights[k] > weights[largest]) largest = k;
+    rounded += weights[k];
+  }
+  weights[largest] += 1 - rounded;
+}
 
 std::vector<Vec3d> face_normals_of(const Mesh& mesh, const GroupIndex& index) {
   std::vector<Vec3d> normals(index.wedges.size());

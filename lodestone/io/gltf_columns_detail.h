@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,13 @@ Column position_column(const Mesh& mesh, const GroupIndex& index, ComponentType 
 /// where they vanished), colours in [0, 1], skin weights of a wedge summing to one over all its sets as stored.
 Column stream_column(const Mesh& mesh, const GroupIndex& index, const AttributePlan& plan,
                      const std::vector<Vec3d>& face_normals);
+
+/// A vertex's skin weights over all its sets, scaled so that they sum to exactly one when they are stored as `type`:
+/// the largest takes the rest. Where there are none the first becomes one. `weights` is not empty, none is negative.
+void sum_to_one(std::span<double> weights, ComponentType type);
+
+/// `value` as an accessor's element of `type`, rounded and clamped to what it holds.
+void store_number(char* at, double value, ComponentType type, bool normalized);
 
 /// The normal of the first triangle at each wedge.
 std::vector<Vec3d> face_normals_of(const Mesh& mesh, const GroupIndex& index);

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "lodestone/io/draco_detail.h"
+#include "lodestone/io/gltf_repair_detail.h"
 
 namespace lodestone::io {
 
@@ -88,7 +89,7 @@ std::vector<AttributePlan> plan_attributes(const Mesh& mesh, bool named, bool fl
     AttributePlan plan;
     if (named) {
       plan.stream = i;
-      plan.name = stream.name;
+      plan.name = is_legal_attribute(stream.name) ? stream.name : "_" + stream.name;
       const bool morph = stream.semantic == Semantic::morph_position || stream.semantic == Semantic::morph_normal ||
                          stream.semantic == Semantic::morph_tangent || stream.semantic == Semantic::morph_other;
       if (morph) plan.target = stream.target;

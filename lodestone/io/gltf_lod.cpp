@@ -3,8 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "lodestone/math/vec.h"
 
 namespace lodestone::io {
+
+bool has_odd_transform(const Json& node) {
+  double q[4], m[16];
+  const Result<bool> rotation = numbers_member(node, "rotation", q, {}), matrix = numbers_member(node, "matrix", m, {});
+  if (rotation && *rotation) {
+    if (std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) > 1e-3) return true;
+  }
+  if (!matrix || !*matrix) return false;
+  for (const char* key : {"translation", "rotation", "scale"}) {
+    if (node.contains(key)) return true;
+  }
+  const Vec3d x{m[0], m[1], m[2]}, y{m[4], m[5], m[6]}, z{m[8], m[9], m[10]};
+  const auto leans = [](Vec3d a, Vec3d b) { return std::abs(dot(a, b)) > 1e-4 * length(a) * length(b); };
+  return leans(x, y) || leans(y, z) || leans(x, z) || m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1;
+}
 
 namespace {
 
@@ -75,14 +93,15 @@ void move_weight_channels(Json& json, std::size_t from, std::size_t holder, cons
   });
 }
 
-// The node that shall carry the levels: itself, or a new leaf that takes over mesh, skin and weights.
+// The node that shall carry the levels: itself, or a new leaf that takes over mesh, skin and weights
+// (so that levels don't repeat a transform that the format forbids, either).
 std::size_t choose_holder(Json& json, std::size_t node) {
   const NodeRole role = role_of(json, node);
   const Json& carrier = json["nodes"][node];
   const Json* extensions = member(carrier, "extensions");
   const bool light = extensions != nullptr && extensions->contains("KHR_lights_punctual");
   const bool busy = !array_member(carrier, "children").empty() || carrier.contains("camera") || light;
-  if (!busy && !role.transform_animated && !role.joint) return node;
+  if (!busy && !role.transform_animated && !role.joint && !has_odd_transform(carrier)) return node;
   Json leaf = Json::object();
   const std::string name = string_member(carrier, "name");
   if (!name.empty()) leaf["name"] = name + "_mesh";

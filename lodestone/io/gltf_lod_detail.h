@@ -7,11 +7,15 @@
 
 namespace lodestone::io {
 
+/// A transform that the format forbids: a rotation that is no unit quaternion, a matrix that shears or projects, or a
+/// matrix beside other parts of a transform.
+bool has_odd_transform(const Json& node);
+
 /// Gives node `node`, which carries a mesh, its coarser levels. level_meshes[k] is the JSON mesh of level k + 1, kNone
-/// where nothing is left of it. A node that has children, is animated, is a joint, or carries a camera or a light hands
-/// its mesh and skin to a new identity leaf; weight animations follow the mesh and are repeated for each level.
-/// `coverage`: MSFT_screencoverage, one value a level with level 0; empty = none. Returns the node of each level,
-/// placed as `node` is.
+/// where nothing is left of it. A node that has children, is animated, is a joint, carries a camera or a light, or has
+/// an odd transform hands its mesh and skin to a new identity leaf; weight animations follow the mesh and are repeated
+/// for each level. `coverage`: MSFT_screencoverage, one value a level with level 0; empty = none. Returns the node of
+/// each level, placed as `node` is.
 std::vector<std::size_t> add_node_levels(Json& json, std::size_t node, const std::vector<std::size_t>& level_meshes,
                                          const std::vector<double>& coverage, std::vector<std::string>& warnings);
 

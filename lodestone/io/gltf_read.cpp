@@ -80,14 +80,15 @@ Result<Model> read_document(std::string bytes, std::string name, const std::file
     return fail(ErrorCode::empty, "has no triangles: the scene draws no mesh", data.name, "is it the right file?");
   }
   model.materials = read_materials(data);
-  for (Mesh& mesh : model.meshes) {
+  for (std::size_t m = 0; m < model.meshes.size(); ++m) {
+    Mesh& mesh = model.meshes[m];
     data.fingerprints.push_back(fingerprint(mesh));  // before anything is mended: a mended mesh is written anew
-    const std::string& called = mesh.name.empty() ? data.name : mesh.name;
+    const std::string called = mesh.name.empty() ? fmt::format("mesh {}", m) : mesh.name;
     if (const std::uint64_t bad = zero_non_finite(mesh); bad > 0) {
       model.warnings.push_back(fmt::format("{}: {} attribute values were not finite: set to zero", called, bad));
     }
-    if (normalize_weights(mesh)) {
-      model.warnings.push_back(fmt::format("{}: skin weights did not sum to one: scaled", called));
+    if (repair_skin(mesh, joint_count_of(data.json, m))) {
+      model.warnings.push_back(fmt::format("{}: skin weights were not valid: put right", called));
     }
   }
   model.document = std::make_shared<const Document>(std::move(*loaded));

@@ -1,5 +1,7 @@
 #include "lodestone/io/gltf_repair_detail.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -37,45 +39,117 @@ void each_tight_accessor(const Json& json, Use use) {
   }
 }
 
-void repair_bounds(const Document::Data& data, std::size_t index, Json& accessor) {
-  if (!accessor.contains("min") && !accessor.contains("max")) return;
-  const Result<Accessor> found = find_accessor(data, index);
-  if (!found || found->type != ComponentType::float32 || found->count == 0) return;
+// Accessors that must tell their smallest and largest values.
+std::vector<bool> find_bounded(const Json& json, std::size_t accessors) {
+  std::vector<bool> out(accessors, false);
+  const auto mark = [&](const Json* value) {
+    const std::size_t a = index_or(value, accessors);
+    if (a < accessors) out[a] = true;
+  };
+  for (const Json& mesh : array_member(json, "meshes")) {
+    for (const Json& primitive : array_member(mesh, "primitives")) {
+      if (const Json* attributes = member(primitive, "attributes"); attributes != nullptr) {
+        mark(member(*attributes, "POSITION"));
+      }
+      for (const Json& target : array_member(primitive, "targets")) mark(member(target, "POSITION"));
+    }
+  }
+  for (const Json& animation : array_member(json, "animations")) {
+    for (const Json& sampler : array_member(animation, "samplers")) mark(member(sampler, "input"));
+  }
+  return out;
+}
+
+Json as_stored(const std::vector<float>& values, ComponentType type) {
+  Json out = Json::array();
+  for (const float v : values) {
+    if (type == ComponentType::float32) {
+      out.push_back(v);
+    } else {
+      out.push_back(static_cast<int>(v));
+    }
+  }
+  return out;
+}
+
+void repair_bounds(const Document::Data& data, std::size_t index, bool needed, Json& accessor) {
+  if (!needed && !accessor.contains("min") && !accessor.contains("max")) return;
+  Result<Accessor> found = find_accessor(data, index);
+  if (!found || found->type == ComponentType::uint32 || found->count == 0) return;
+  found->normalized = false;  // bounds are told as stored
   const std::size_t n = found->components;
   std::vector<float> values(found->count * n), low(n, std::numeric_limits<float>::infinity()), high(n);
   std::fill(high.begin(), high.end(), -std::numeric_limits<float>::infinity());
   gather(*found, {}, found->count, values.data(), n, 0, {});
   for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) return;
     low[i % n] = std::min(low[i % n], values[i]);
     high[i % n] = std::max(high[i % n], values[i]);
   }
-  if (accessor.contains("min") && accessor["min"] != Json(low)) accessor["min"] = low;
-  if (accessor.contains("max") && accessor["max"] != Json(high)) accessor["max"] = high;
+  const Json least = as_stored(low, found->type), most = as_stored(high, found->type);
+  if ((needed || accessor.contains("min")) && accessor["min"] != least) accessor["min"] = least;
+  if ((needed || accessor.contains("max")) && accessor["max"] != most) accessor["max"] = most;
 }
 
 }  // namespace
 
-bool normalize_weights(Mesh& mesh) {
-  std::vector<AttributeStream*> sets;
-  for (AttributeStream& s : mesh.attributes) {
-    if (s.semantic == Semantic::weights && std::holds_alternative<std::vector<float>>(s.values)) sets.push_back(&s);
+namespace {
+
+struct SkinSet {
+  std::vector<std::uint32_t>* joints;
+  std::vector<float>* weights;
+};
+
+// Sets of four, as glTF has them. `skinned`: the wedges of groups that have them all, empty for all wedges.
+std::vector<SkinSet> skin_sets(Mesh& mesh, std::vector<bool>& skinned) {
+  std::vector<SkinSet> out;
+  std::vector<bool> groups(mesh.groups.size(), true);
+  bool everywhere = true;
+  for (AttributeStream& w : mesh.attributes) {
+    auto* weights = std::get_if<std::vector<float>>(&w.values);
+    if (w.semantic != Semantic::weights || w.components != 4 || weights == nullptr) continue;
+    const auto j = std::find_if(mesh.attributes.begin(), mesh.attributes.end(), [&](const AttributeStream& s) {
+      return s.semantic == Semantic::joints && s.set == w.set && s.components == 4;
+    });
+    auto* joints = j != mesh.attributes.end() ? std::get_if<std::vector<std::uint32_t>>(&j->values) : nullptr;
+    if (joints == nullptr) continue;
+    out.push_back({joints, weights});
+    everywhere = everywhere && w.present.empty();
+    for (std::size_t g = 0; g < groups.size() && out.size() == 1; ++g) groups[g] = w.in_group(g);
   }
-  if (sets.empty()) return false;
+  if (everywhere || out.empty()) return out;
+  skinned.assign(mesh.wedge_count(), false);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::size_t g = mesh.group_of(t);
+    if (g >= groups.size() || !groups[g]) continue;
+    for (const std::uint32_t w : mesh.triangles[t]) skinned[w] = true;
+  }
+  return out;
+}
+
+}  // namespace
+
+bool repair_skin(Mesh& mesh, std::uint32_t joint_count) {
+  std::vector<bool> skinned;
+  const std::vector<SkinSet> sets = skin_sets(mesh, skinned);
   bool changed = false;
-  for (std::size_t w = 0; w < mesh.wedge_count(); ++w) {
-    double sum = 0;
-    for (const AttributeStream* s : sets) {
-      const auto& values = std::get<std::vector<float>>(s->values);
-      for (std::size_t k = 0; k < s->components; ++k) sum += values[w * s->components + k];
+  std::vector<double> weights(4 * sets.size());
+  std::vector<std::uint32_t> joints(weights.size());
+  for (std::size_t wedge = 0; wedge < mesh.wedge_count() && !sets.empty(); ++wedge) {
+    if (!skinned.empty() && !skinned[wedge]) continue;
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      weights[k] = static_cast<double>((*sets[k / 4].weights)[4 * wedge + k % 4]);
+      joints[k] = (*sets[k / 4].joints)[4 * wedge + k % 4];
     }
-    if (std::abs(sum - 1) <= 1e-3) continue;
+    const bool settled = settle_influences(joints, weights, joint_count);
+    double sum = 0;
+    for (const double w : weights) sum += w;
+    if (!settled && std::abs(sum - 1) <= 1e-3) continue;
     changed = true;
-    for (AttributeStream* s : sets) {
-      auto& values = std::get<std::vector<float>>(s->values);
-      for (std::size_t k = 0; k < s->components; ++k) {
-        float& value = values[w * s->components + k];
-        value = sum > 0 ? static_cast<float>(value / sum) : (s == sets.front() && k == 0 ? 1.0F : 0.0F);
-      }
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      const double alone = k == 0 ? 1 : 0;
+      (*sets[k / 4].weights)[4 * wedge + k % 4] = static_cast<float>(sum > 0 ? weights[k] / sum : alone);
+      (*sets[k / 4].joints)[4 * wedge + k % 4] = joints[k];
     }
   }
   return changed;
@@ -98,7 +172,8 @@ std::uint64_t zero_non_finite(Mesh& mesh) {
 void repair_accessors(const Document::Data& data, Json& json) {
   const std::size_t accessors = array_member(json, "accessors").size(),
                     views = array_member(json, "bufferViews").size();
-  for (std::size_t i = 0; i < accessors; ++i) repair_bounds(data, i, json["accessors"][i]);
+  const std::vector<bool> bounded = find_bounded(json, accessors);
+  for (std::size_t i = 0; i < accessors; ++i) repair_bounds(data, i, bounded[i], json["accessors"][i]);
   each_tight_accessor(json, [&](const Json& value) {
     const std::size_t a = index_or(&value, accessors);
     if (a >= accessors) return;
@@ -110,6 +185,102 @@ void repair_accessors(const Document::Data& data, Json& json) {
     const bool tight = found->stride == found->components * size_of(found->type);
     if (tight) json["bufferViews"][v].erase("byteStride");
   });
+}
+
+bool is_legal_attribute(std::string_view name) {
+  if (name == "POSITION" || name.starts_with('_')) return true;
+  const Semantic semantic = attribute_kind(name, false).semantic;
+  return semantic != Semantic::generic && semantic != Semantic::categorical;
+}
+
+namespace {
+
+void repair_names(Json& attributes, std::vector<std::string>& warnings) {
+  Json out = Json::object();
+  for (const auto& [name, value] : attributes.items()) {
+    std::string legal = name;
+    while (!is_legal_attribute(legal) || (legal != name && attributes.contains(legal))) legal.insert(0, "_");
+    out[legal] = value;
+    if (legal == name) continue;
+    std::string text = fmt::format("attribute '{}' needs an underscore in glTF: named '{}'", name, legal);
+    if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(std::move(text));
+  }
+  attributes = std::move(out);
+}
+
+// As many as there are targets.
+void fit_weights(Json& holder, std::size_t targets) {
+  if (member(holder, "weights") == nullptr) return;
+  Json& weights = holder["weights"];
+  if (!weights.is_array() || weights.size() == targets) return;
+  Json fitting = Json::array();
+  for (std::size_t t = 0; t < targets; ++t) fitting.push_back(t < weights.size() ? weights[t] : Json(0));
+  weights = std::move(fitting);
+  if (targets == 0) holder.erase("weights");
+}
+
+std::size_t target_count(const Json& mesh) {
+  const Json& primitives = array_member(mesh, "primitives");
+  return primitives.empty() ? 0 : array_member(primitives[0], "targets").size();
+}
+
+}  // namespace
+
+void repair_meshes(Json& json, std::vector<std::string>& warnings) {
+  const std::size_t meshes = array_member(json, "meshes").size();
+  for (std::size_t m = 0; m < meshes; ++m) {
+    Json& mesh = json["meshes"][m];
+    fit_weights(mesh, target_count(mesh));
+    for (std::size_t p = 0; p < array_member(mesh, "primitives").size(); ++p) {
+      Json& primitive = mesh["primitives"][p];
+      const Json* attributes = member(primitive, "attributes");
+      if (attributes == nullptr || !attributes->is_object() || is_draco_primitive(primitive)) continue;
+      const bool legal = std::all_of(attributes->items().begin(), attributes->items().end(),
+                                     [](const auto& entry) { return is_legal_attribute(entry.key()); });
+      if (!legal) repair_names(primitive["attributes"], warnings);
+    }
+  }
+  for (std::size_t n = 0; n < array_member(json, "nodes").size(); ++n) {
+    Json& node = json["nodes"][n];
+    const std::size_t m = index_or(member(node, "mesh"), meshes);
+    if (m < meshes) fit_weights(node, target_count(json["meshes"][m]));
+  }
+}
+
+namespace {
+
+// Of what KHR_mesh_quantization allows, the part that glTF alone does not.
+bool is_quantized(const std::string& name, bool morph, const Json& accessor) {
+  const Json* number = member(accessor, "componentType");
+  const std::uint64_t type = number != nullptr ? as_uint(*number).value_or(0) : 0;
+  if (type < 5120 || type > 5123) return false;
+  if (name == "POSITION") return true;
+  const Semantic semantic = attribute_kind(name, morph).semantic;
+  if (semantic == Semantic::uv) return type == 5120 || type == 5122 || member(accessor, "normalized") == nullptr;
+  return semantic == Semantic::normal || semantic == Semantic::tangent || semantic == Semantic::morph_normal ||
+         semantic == Semantic::morph_tangent;
+}
+
+}  // namespace
+
+void list_quantization(Json& json) {
+  const Json& accessors = array_member(json, "accessors");
+  bool quantized = false;
+  const auto look = [&](const Json& attributes, bool morph) {
+    for (const auto& [name, value] : attributes.items()) {
+      const std::size_t a = index_or(&value, accessors.size());
+      quantized = quantized || (a < accessors.size() && is_quantized(name, morph, accessors[a]));
+    }
+  };
+  for (const Json& mesh : array_member(json, "meshes")) {
+    for (const Json& primitive : array_member(mesh, "primitives")) {
+      if (const Json* attributes = member(primitive, "attributes"); attributes != nullptr) look(*attributes, false);
+      for (const Json& target : array_member(primitive, "targets")) look(target, true);
+    }
+  }
+  if (!quantized) return;
+  list_extension(json, "extensionsUsed", "KHR_mesh_quantization");
+  list_extension(json, "extensionsRequired", "KHR_mesh_quantization");
 }
 
 std::vector<bool> release_views(const Document::Data& data, const std::vector<bool>& rewritten, Json& json) {

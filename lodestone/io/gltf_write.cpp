@@ -105,12 +105,14 @@ std::vector<bool> find_rewritten(const Writer& w) {
 
 // Every view of the document that is still needed gets its bytes in the new binary chunk.
 void keep_views(Writer& w) {
+  const MendedViews mended = mend_values(*w.document, w.rewritten, w.report.warnings);
   const std::vector<bool> released = release_views(*w.document, w.rewritten, w.json);
   for (std::size_t i = 0; i < w.document->views.size(); ++i) {
     if (released[i]) {
       w.pack->free_view(i);
     } else {
-      w.pack->set_view(i, 0, as_text(w.document->views[i].bytes));
+      const auto better = mended.find(i);
+      w.pack->set_view(i, 0, better != mended.end() ? better->second : as_text(w.document->views[i].bytes));
     }
   }
 }
@@ -129,8 +131,22 @@ void keep_images(Writer& w) {
   }
 }
 
+// A transform that is no move, turn and scale stays, as anything else would draw another model.
+void tell_odd_transforms(Writer& w) {
+  const Json& nodes = array_member(w.json, "nodes");
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (!has_odd_transform(nodes[n])) continue;
+    w.report.warnings.push_back(
+        fmt::format("node {} has a transform that glTF does not allow (a rotation that is no unit quaternion, or a "
+                    "matrix that shears): kept as it is",
+                    n));
+  }
+}
+
 void begin_from_document(Writer& w) {
   w.json = w.document->json;
+  repair_meshes(w.json, w.report.warnings);
+  tell_odd_transforms(w);
   w.instance_nodes = w.document->instance_nodes;
   for (const Json& mesh : array_member(w.json, "meshes")) w.source_meshes.push_back(mesh);
   w.pack.emplace(w.json, w.options.compression, w.levels.size());
@@ -374,6 +390,7 @@ Result<WriteReport> write(const Model& original, std::span<const Level> levels, 
   if (const Result<void> ok = write_original_meshes(w, task); !ok) return fail(ok.error());
   if (const Result<void> ok = write_levels(w, task); !ok) return fail(ok.error());
   list_draco(w.json);
+  if (w.document != nullptr) list_quantization(w.json);
   const std::string bin = w.pack->finish();
   if (bin.empty()) w.json.erase("buffers");
   if (task.cancelled()) return cancelled_error("writing");
