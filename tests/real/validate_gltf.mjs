@@ -1,11 +1,20 @@
-// node validate_gltf.mjs NODE_MODULES FILE: the Khronos validator's errors, exit 1 if there are any.
+// node validate_gltf.mjs NODE_MODULES FILE...: what the Khronos validator finds, a line of JSON a file:
+// {"file", "errors" (null: no glTF at all), "warnings", "first" (some errors in words)}.
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
+import { dirname, resolve } from 'node:path';
 
-const [modules, file] = process.argv.slice(2);
+const [modules, ...files] = process.argv.slice(2);
 const validator = createRequire(`${modules}/`)('gltf-validator');
-const report = await validator.validateBytes(new Uint8Array(readFileSync(file)), { maxIssues: 0 });
-const errors = report.issues.messages.filter((m) => m.severity === 0);
-for (const e of errors.slice(0, 5)) console.log(`${e.code} ${e.pointer ?? ''} ${e.message}`);
-console.log(`${report.issues.numErrors} errors, ${report.issues.numWarnings} warnings`);
-process.exit(report.issues.numErrors > 0 ? 1 : 0);
+for (const file of files) {
+  const load = async (uri) => new Uint8Array(readFileSync(resolve(dirname(file), decodeURIComponent(uri))));
+  try {
+    const bytes = new Uint8Array(readFileSync(file));
+    const { issues } = await validator.validateBytes(bytes, { maxIssues: 0, externalResourceFunction: load });
+    const errors = issues.messages.filter((m) => m.severity === 0);
+    const first = errors.slice(0, 3).map((e) => `${e.code} ${e.pointer ?? ''} ${e.message}`);
+    console.log(JSON.stringify({ file, errors: issues.numErrors, warnings: issues.numWarnings, first }));
+  } catch (problem) {
+    console.log(JSON.stringify({ file, errors: null, warnings: 0, first: [String(problem)] }));
+  }
+}
