@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "lodestone/io/polygon_ears_detail.h"
+
 namespace lodestone::io {
 
 namespace {
@@ -16,9 +18,17 @@ Vec3d newell_normal(std::span<const Vec3d> corners) {
   return normal;
 }
 
-double cross2(Vec2d a, Vec2d b, Vec2d c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
-
 }  // namespace
+
+struct PolygonCutter::Scratch {
+  EarClipper ears;
+  std::vector<std::uint32_t> twin;
+};
+
+PolygonCutter::PolygonCutter() : scratch_(std::make_unique<Scratch>()) {}
+PolygonCutter::~PolygonCutter() = default;
+PolygonCutter::PolygonCutter(PolygonCutter&&) noexcept = default;
+PolygonCutter& PolygonCutter::operator=(PolygonCutter&&) noexcept = default;
 
 std::span<const CornerTriple> PolygonCutter::cut(std::span<const Vec3d> corners) {
   triples_.clear();
@@ -28,7 +38,10 @@ std::span<const CornerTriple> PolygonCutter::cut(std::span<const Vec3d> corners)
     quad(corners);
   } else if (corners.size() > 4) {
     if (project(corners)) {
-      clip_ears();
+      scratch_->twin.clear();
+      const PolygonTriangles triangles{triples_, scratch_->twin};
+      scratch_->ears.clip(flat_, triangles);
+      turn_diagonals(flat_, triangles);
     } else {
       fan(corners.size());
     }
@@ -68,78 +81,6 @@ bool PolygonCutter::project(std::span<const Vec3d> corners) {
     flat_[i] = {dot(d, u), dot(d, v)};
   }
   return true;
-}
-
-double PolygonCutter::area_at(std::uint32_t corner) const {
-  return cross2(flat_[before_[corner]], flat_[corner], flat_[after_[corner]]);
-}
-
-void PolygonCutter::update(std::uint32_t corner) { is_blunt_[corner] = area_at(corner) > 0 ? 0 : 1; }
-
-// A convex corner whose triangle holds no blunt corner of the rest, on its sides neither. Corners at the same place as
-// one of the triangle's are let in: polygons with bridges to their holes have such.
-bool PolygonCutter::is_ear(std::uint32_t corner) {
-  if (is_blunt_[corner]) return false;
-  const Vec2d a = flat_[before_[corner]], b = flat_[corner], c = flat_[after_[corner]];
-  std::size_t kept = 0;
-  bool ear = true;
-  for (std::size_t i = 0; i < blunt_.size(); ++i) {
-    const std::uint32_t other = blunt_[i];
-    if (!is_blunt_[other]) continue;  // convex or clipped since: drops out of the list
-    blunt_[kept++] = other;
-    if (!ear) continue;
-    const Vec2d p = flat_[other];
-    if (p == a || p == b || p == c) continue;
-    if (cross2(a, b, p) >= 0 && cross2(b, c, p) >= 0 && cross2(c, a, p) >= 0) ear = false;
-  }
-  budget_ -= std::min<std::uint64_t>(budget_, blunt_.size() + 1);
-  blunt_.resize(kept);
-  return ear;
-}
-
-void PolygonCutter::clip_ears() {
-  const auto n = static_cast<std::uint32_t>(flat_.size());
-  before_.resize(n);
-  after_.resize(n);
-  is_blunt_.assign(n, 0);
-  blunt_.clear();
-  for (std::uint32_t i = 0; i < n; ++i) {
-    before_[i] = i == 0 ? n - 1 : i - 1;
-    after_[i] = i + 1 == n ? 0 : i + 1;
-  }
-  for (std::uint32_t i = 0; i < n; ++i) update(i);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (is_blunt_[i]) blunt_.push_back(i);
-  }
-  constexpr std::uint64_t kStepsPerCorner = 2048;
-  budget_ = kStepsPerCorner * n;
-
-  std::uint32_t left = n, corner = 0, refused = 0;
-  while (left > 3) {
-    // After a round without an ear the polygon crosses itself: any corner goes, as in a fan.
-    const bool forced = refused >= left || budget_ == 0;
-    if (!forced && !is_ear(corner)) {
-      corner = after_[corner];
-      ++refused;
-      continue;
-    }
-    const std::uint32_t a = before_[corner], c = after_[corner];
-    triples_.push_back({a, corner, c});
-    after_[a] = c;
-    before_[c] = a;
-    is_blunt_[corner] = 0;
-    const auto renew = [&](std::uint32_t at) {
-      const bool was = is_blunt_[at] != 0;
-      update(at);
-      if (!was && is_blunt_[at]) blunt_.push_back(at);
-    };
-    renew(a);
-    renew(c);
-    --left;
-    refused = 0;
-    corner = after_[c];  // not the neighbour: that would make a fan of slivers
-  }
-  triples_.push_back({before_[corner], corner, after_[corner]});
 }
 
 }  // namespace lodestone::io
