@@ -8,6 +8,7 @@
 #include "lodestone/base/memory.h"
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/units.h"
+#include "lodestone/chain/scan_colors_detail.h"
 #include "lodestone/points/normals.h"
 #include "lodestone/spatial/bvh.h"
 #include "lodestone/spatial/closest_batch.h"
@@ -117,13 +118,17 @@ Result<ScanSurface> surface_of_scan(PointCloud cloud, const ScanSurfaceOptions& 
                                     : contour_distance(cloud, scan, figures, task.part(0.5, "measuring distances"));
   if (!mesh) return fail(mesh.error());
   warnings.insert(warnings.end(), figures.warnings.begin(), figures.warnings.end());
+  if (!cloud.colors.empty()) {
+    const Task coloring = task.part(0.05, "coloring");
+    add_scan_colors(cloud, spatial::KdTree(cloud.positions, coloring), figures.spacing, *mesh, warnings, coloring);
+  }
   out.model = make_model(std::move(*mesh));
   out.model.meters_per_unit = cloud.meters_per_unit;
   out.model.file_vertices = cloud.file_points;
   out.spacing = figures.spacing;
   out.close_radius = figures.close_radius;
   out.open = figures.open;
-  const Result<Distances> d = distances_of(cloud, out.model, task.part(0.2, "measuring"));
+  const Result<Distances> d = distances_of(cloud, out.model, task.part(0.15, "measuring"));
   if (!d) return fail(d.error());
   if (task.cancelled()) return cancelled_error("remeshing");
   out.mean_distance = d->sum / static_cast<double>(std::max<std::size_t>(1, cloud.size()));

@@ -17,7 +17,7 @@ struct PointCloud {
   Vec3d offset;                  ///< added to every position; zero unless coordinates are far from the origin
   /// Unit vectors that look outward; (0, 0, 0) where a point's is not known. Empty: there are none.
   std::vector<Vec3f> normals;
-  std::vector<std::array<std::uint8_t, 4>> colors;  ///< red, green, blue, alpha (255 where not told); or empty
+  std::vector<std::array<std::uint8_t, 4>> colors;  ///< sRGB, and alpha (255 where not told); or empty
   double meters_per_unit = 0;                       ///< 0 = the file doesn't say
   std::uint64_t file_points = 0;                    ///< as stored in the file, those left out included
   /// What a reader found and put right or left out, in plain words, for the user.
