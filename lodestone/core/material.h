@@ -25,6 +25,12 @@ struct TextureCoordinates {
   std::array<double, 6> map{1, 0, 0, 0, 1, 0};  ///< u' = m0 u + m1 v + m2, v' = m3 u + m4 v + m5
 };
 
+/// A line of an MTL that no field of Material holds, as it was. That of a texture ends before the file's name.
+struct MtlLine {
+  std::string text;                      ///< "illum 2", "map_Bump -bm 0.5"
+  std::shared_ptr<const Image> texture;  ///< null: the line is whole
+};
+
 struct Material {
   std::string name;
   std::array<float, 4> base_color{1, 1, 1, 1};  ///< linear RGBA factor
@@ -39,6 +45,9 @@ struct Material {
   std::shared_ptr<const Image> normal_texture;
   bool double_sided = false;
   float alpha_cutoff = 0;  ///< nothing is drawn where alpha is below it (glTF's MASK); 0 = no mask
+  bool blend = false;      ///< the texture's alpha lets shine through what lies behind (glTF's BLEND)
+  /// What else an MTL said, for writing MTL; writing glTF takes from it what glTF holds.
+  std::vector<MtlLine> mtl_lines;
 };
 
 }  // namespace lodestone

@@ -23,6 +23,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 struct FaceGroup {
   std::uint32_t material = kNone;  ///< index into Model::materials
   std::string name;                ///< part or group name as the file said; may be empty
+  std::string object = {};         ///< `o` of an OBJ, of which this is a group; may be empty, or the same as `name`
 };
 
 /// A triangle mesh with wedges. A *vertex* is a position; a *wedge* is a vertex with one tuple of attributes; corners

@@ -1,8 +1,13 @@
 #include "lodestone/io/gltf_fresh_detail.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <map>
+
+#include "lodestone/io/mtl_detail.h"
 
 namespace lodestone::io {
 
@@ -114,7 +119,8 @@ class FreshTextures {
 
 }  // namespace
 
-void add_fresh_materials(const Model& model, Json& json, GltfPack& pack) {
+void add_fresh_materials(const Model& model, Json& json, GltfPack& pack, std::vector<std::string>& warnings) {
+  std::vector<std::string> left_out;
   FreshTextures textures(json, pack);
   for (const Material& material : model.materials) {
     Json out = Json::object();
@@ -126,19 +132,35 @@ void add_fresh_materials(const Model& model, Json& json, GltfPack& pack) {
       pbr["baseColorTexture"] = std::move(info);
     }
     out["pbrMetallicRoughness"] = std::move(pbr);
-    if (Json info = textures.info(material.normal_texture.get()); !info.is_null()) {
+    const MtlLook look = look_of(material, left_out);
+    const Image* normal = look.normal_texture != nullptr ? look.normal_texture : material.normal_texture.get();
+    if (Json info = textures.info(normal); !info.is_null()) {
+      if (look.normal_scale != 1) info["scale"] = look.normal_scale;
       out["normalTexture"] = std::move(info);
     }
+    if (Json info = textures.info(look.emissive_texture); !info.is_null()) out["emissiveTexture"] = std::move(info);
+    if (look.emissive != std::array<float, 3>{0, 0, 0}) out["emissiveFactor"] = look.emissive;
     if (material.double_sided) out["doubleSided"] = true;
-    if (material.base_color[3] < 1) out["alphaMode"] = "BLEND";
+    if (material.alpha_cutoff > 0) {
+      out["alphaMode"] = "MASK";
+      out["alphaCutoff"] = material.alpha_cutoff;
+    } else if (material.blend || material.base_color[3] < 1) {
+      out["alphaMode"] = "BLEND";
+    }
     json["materials"].push_back(std::move(out));
+  }
+  if (!left_out.empty()) {
+    warnings.push_back(fmt::format("properties of materials were left out: {}", fmt::join(left_out, ", ")));
   }
 }
 
 void use_untextured_material(Json& json, Json& primitive) {
   if (!primitive.contains("material") || primitive["attributes"].contains("TEXCOORD_0")) return;
   Json twin = json["materials"][primitive["material"].get<std::size_t>()];
-  if (twin["pbrMetallicRoughness"].erase("baseColorTexture") + twin.erase("normalTexture") == 0) return;
+  if (twin["pbrMetallicRoughness"].erase("baseColorTexture") + twin.erase("normalTexture") +
+          twin.erase("emissiveTexture") ==
+      0)
+    return;
   Json& materials = json["materials"];
   auto found = std::find(materials.begin(), materials.end(), twin);
   if (found == materials.end()) {

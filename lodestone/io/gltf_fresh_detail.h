@@ -1,6 +1,7 @@
 // A glTF document for a model that came from another format.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "lodestone/io/gltf_pack_detail.h"
@@ -10,15 +11,15 @@ namespace lodestone::io {
 /// The primitives of a mesh, one a group, without geometry.
 Json fresh_primitives(const Mesh& mesh);
 
-/// Scene, a node an instance (its index is the instance's), meshes whose primitives still lack geometry (one a face
+/// Scene, a node an instance (its index is the instance's), and meshes whose primitives still lack geometry (one a face
 /// group, so that primitive g is group g).
 Json make_fresh_document(const Model& model);
 
 /// Gives a node the transform of an instance and its mesh's offset, in place of the one that it has.
 void place_fresh_node(Json& node, const Instance& instance, const Mesh& mesh);
 
-/// Materials with their textures in the pack.
-void add_fresh_materials(const Model& model, Json& json, GltfPack& pack);
+/// Materials with their textures in the pack; what glTF does not hold of an MTL is told in `warnings`.
+void add_fresh_materials(const Model& model, Json& json, GltfPack& pack, std::vector<std::string>& warnings);
 
 /// A primitive without TEXCOORD_0 must not have a material with a texture: it gets that material's twin without.
 void use_untextured_material(Json& json, Json& primitive);

@@ -85,6 +85,7 @@ Material read_material(const Document::Data& data, const Json& json) {
     const Json* cutoff = member(json, "alphaCutoff");
     material.alpha_cutoff = cutoff != nullptr && cutoff->is_number() ? cutoff->get<float>() : 0.5F;
   }
+  material.blend = string_member(json, "alphaMode") == "BLEND";
   material.metallic = 1;
   const Json* pbr = member(json, "pbrMetallicRoughness");
   if (pbr == nullptr) return material;

@@ -172,7 +172,7 @@ void begin_fresh(Writer& w) {
   for (const Json& mesh : w.json["meshes"]) w.source_meshes.push_back(mesh);
   w.pack.emplace(w.json, w.options.compression, w.levels.size());
   w.rewritten = find_rewritten(w);
-  add_fresh_materials(original, w.json, *w.pack);
+  add_fresh_materials(original, w.json, *w.pack, w.report.warnings);
 }
 
 // The primitives of mesh `index` with the geometry of `mesh`; points and lines stay as they are.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lodestone/io/image_file_detail.h"
+#include "lodestone/io/near_file_detail.h"
 #include "lodestone/io/text_reader_detail.h"
 
 namespace lodestone::io {
@@ -40,31 +41,17 @@ std::string_view image_extension(std::string_view mime) {
   return {};
 }
 
-std::optional<std::filesystem::path> path_inside(const std::filesystem::path& folder, std::string_view name) {
-  std::string spelt(name);
-  std::replace(spelt.begin(), spelt.end(), '\\', '/');
-  const bool has_drive = spelt.size() > 1 && spelt[1] == ':';
-  if (spelt.empty() || has_drive || spelt.find('\0') != std::string::npos) return std::nullopt;
-  const std::filesystem::path relative = std::filesystem::path(spelt).lexically_normal();
-  if (relative.is_absolute() || *relative.begin() == ".." || relative == ".") return std::nullopt;
-  return folder / relative;
-}
-
 std::shared_ptr<const Image> load_image_near(const std::filesystem::path& folder, std::string_view name,
-                                             std::vector<std::string>& warnings) {
+                                             std::vector<std::string>& warnings, const std::filesystem::path& from) {
   const auto image = std::make_shared<Image>();
   const std::string_view bare = name.substr(name.find_last_of("/\\") + 1);
   image->name = bare;
-  const auto is_file = [](const std::optional<std::filesystem::path>& path) {
-    std::error_code ignored;
-    return path && std::filesystem::is_regular_file(*path, ignored);
-  };
-  std::optional<std::filesystem::path> path = path_inside(folder, name);
-  if (!is_file(path)) path = path_inside(folder, bare);
-  if (!is_file(path)) {
+  const std::optional<std::filesystem::path> path = find_near(folder, from, name);
+  if (!path) {
     warnings.push_back(fmt::format("the texture '{}' was not found in the model's folder", name));
     return image;
   }
+  image->name = path->filename().string();  // names that differ in case alone mean one file
   Result<std::string> bytes = read_file(*path);
   if (!bytes) {
     warnings.push_back(fmt::format("the texture '{}' could not be read: {}", name, bytes.error().what));
@@ -99,7 +86,7 @@ bool same_image(const Image& a, const Image& b) { return a.name == b.name && a.e
 }  // namespace
 
 std::vector<TextureFile> texture_files(std::span<const Material> materials, const std::filesystem::path& model,
-                                       bool with_normals) {
+                                       bool all) {
   const std::string stem = model.stem().string();
   std::vector<TextureFile> files;
   std::set<std::string> taken{model.filename().string(), stem + ".mtl"};
@@ -113,7 +100,9 @@ std::vector<TextureFile> texture_files(std::span<const Material> materials, cons
   };
   for (const Material& m : materials) {
     add(m.base_color_texture.get());
-    if (with_normals) add(m.normal_texture.get());
+    if (!all) continue;
+    add(m.normal_texture.get());
+    for (const MtlLine& line : m.mtl_lines) add(line.texture.get());
   }
   return files;
 }

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,15 +19,11 @@ std::string image_mime(std::span<const std::byte> encoded);
 /// ".png", ".jpg", …; empty for an unknown type.
 std::string_view image_extension(std::string_view mime);
 
-/// The place of a file that a model in `folder` names ("textures\\a.png" too). Nothing if the name is absolute or
-/// climbs out of the folder.
-std::optional<std::filesystem::path> path_inside(const std::filesystem::path& folder, std::string_view name);
-
-/// Loads an image that a model names. Where its path leads nowhere or out of the folder, the bare file name is tried in
-/// the folder, as models often carry the paths of the machine that they come from. Missing: an Image without bytes, and
-/// a warning.
+/// Loads an image that a model in `folder` names, or a file of it in `folder / from`; see find_near(). Missing: an
+/// Image without bytes, and a warning.
 std::shared_ptr<const Image> load_image_near(const std::filesystem::path& folder, std::string_view name,
-                                             std::vector<std::string>& warnings);
+                                             std::vector<std::string>& warnings,
+                                             const std::filesystem::path& from = {});
 
 /// An image that is written beside a model, and its file name there.
 struct TextureFile {
@@ -36,12 +31,12 @@ struct TextureFile {
   std::string name;
 };
 
-/// The base colour textures of the materials, with their normal textures if asked for, each image once, in order of
-/// first use; those without bytes are left out.
+/// The base colour textures of the materials, with `all` their normal textures and those of MTL lines as well, each
+/// image once, in order of first use; those without bytes are left out.
 /// Their names are the images' own without folders, safe to stand in a line of text, all different and different from
 /// `model` and its .mtl.
 std::vector<TextureFile> texture_files(std::span<const Material> materials, const std::filesystem::path& model,
-                                       bool with_normals = false);
+                                       bool all = false);
 /// The name of the image's file; empty if it has none.
 std::string_view texture_name(std::span<const TextureFile> files, const Image* image);
 /// Opens the file beside `model` and writes the image; the caller commits. Errors: cannot_write.

@@ -1,82 +1,27 @@
-#include "lodestone/io/mtl.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
-#include "lodestone/base/text.h"
-#include "lodestone/io/image_file_detail.h"
-#include "lodestone/io/text_reader_detail.h"
+#include "lodestone/io/mtl_detail.h"
+#include "lodestone/io/mtl_words_detail.h"
 
 namespace lodestone::io {
 
 namespace {
 
-// Up to `count` numbers off the front of `rest`; returns how many there were.
-std::size_t take_numbers(std::string_view& rest, float* into, std::size_t count) {
-  std::size_t taken = 0;
-  while (taken < count) {
-    std::string_view ahead = rest;
-    float value = 0;
-    if (!parse_number(next_word(ahead), value)) break;
-    into[taken++] = value;
-    rest = ahead;
-  }
-  return taken;
-}
-
 float share(float value) { return value >= 0 ? std::min(value, 1.0F) : 0.0F; }
-
-// The kinds of lines that are not understood, each once, in order of first use.
-class LeftOut {
- public:
-  explicit LeftOut(std::vector<std::string>& kinds) : kinds_(kinds) {}
-
-  void add(std::string_view kind) {
-    if (kinds_.size() > kMost || !std::all_of(kind.begin(), kind.end(), is_printable)) return;
-    const std::string lower = lower_case(kind);
-    if (std::any_of(kinds_.begin(), kinds_.end(), [&](const std::string& k) { return lower_case(k) == lower; })) return;
-    kinds_.push_back(kinds_.size() == kMost ? "others" : std::string(kind));
-  }
-
- private:
-  static constexpr std::size_t kMost = 12;  // a damaged file may hold any number
-  static bool is_printable(char c) { return c >= 0x20 && c < 0x7f; }
-  std::vector<std::string>& kinds_;
-};
-
-// The file name of a map line, which may hold blanks, behind its options.
-std::string_view map_name(std::string_view key, std::string_view rest, LeftOut& left_out) {
-  while (true) {
-    std::string_view ahead = trimmed(rest);
-    if (!ahead.starts_with('-')) return ahead;
-    const std::string_view option = next_word(ahead);
-    float ignored[3];
-    if (option == "-s" || option == "-o" || option == "-t") {
-      take_numbers(ahead, ignored, 3);
-    } else if (option == "-mm") {
-      take_numbers(ahead, ignored, 2);
-    } else if (option == "-bm" || option == "-boost" || option == "-texres") {
-      take_numbers(ahead, ignored, 1);
-    } else if (option == "-blendu" || option == "-blendv" || option == "-cc" || option == "-clamp" ||
-               option == "-imfchan" || option == "-type") {
-      next_word(ahead);
-    } else {
-      return trimmed(rest);  // a name that begins with '-'
-    }
-    left_out.add(fmt::format("{} {}", key, option));
-    rest = ahead;
-  }
-}
 
 class MtlParser {
  public:
-  MtlParser(const std::filesystem::path& folder, std::vector<Material>& materials, std::vector<std::string>& left_out,
+  MtlParser(const std::filesystem::path& folder, const std::filesystem::path& from, std::vector<Material>& materials,
             std::vector<std::string>& warnings)
-      : folder_(folder), materials_(materials), left_out_(left_out), warnings_(warnings) {}
+      : folder_(folder), from_(from), materials_(materials), warnings_(warnings) {}
 
-  void line(std::string_view rest) {
+  void line(std::string_view whole) {
+    whole = trimmed(whole);
+    std::string_view rest = whole;
     const std::string_view word = next_word(rest);
     if (word.empty() || word.front() == '#') return;
     const std::string key = lower_case(word);
@@ -86,29 +31,14 @@ class MtlParser {
       material.name = trimmed(rest);
       materials_.push_back(std::move(material));
       open_ = true;
+      has_roughness_ = false;
       return;
     }
     if (!open_) return;
-    Material& material = materials_.back();
-    float v[3] = {0, 0, 0};
-    if (key == "kd") {
-      const std::size_t n = take_numbers(rest, v, 3);
-      if (n == 1) v[1] = v[2] = v[0];
-      if (n > 0) std::transform(v, v + 3, material.base_color.begin(), share);
-    } else if (key == "d") {
-      if (take_numbers(rest, v, 1) == 1) material.base_color[3] = share(v[0]);
-    } else if (key == "tr") {
-      if (take_numbers(rest, v, 1) == 1) material.base_color[3] = share(1 - v[0]);
-    } else if (key == "pr") {
-      if (take_numbers(rest, v, 1) == 1) material.roughness = share(v[0]);
-    } else if (key == "pm") {
-      if (take_numbers(rest, v, 1) == 1) material.metallic = share(v[0]);
-    } else if (key == "map_kd") {
-      material.base_color_texture = image(map_name(word, rest, left_out_));
-    } else if (key == "norm") {
-      material.normal_texture = image(map_name(word, rest, left_out_));
-    } else {
-      left_out_.add(word.substr(0, 40));
+    if (is_map_key(key)) {
+      take_map(whole, key, rest);
+    } else if (!take_value(key, rest)) {
+      keep(whole);
     }
   }
 
@@ -116,31 +46,135 @@ class MtlParser {
     if (!open_) return;
     Material& material = materials_.back();
     std::array<float, 4>& color = material.base_color;
-    if (material.base_color_texture && color[0] == 0 && color[1] == 0 && color[2] == 0) color = {1, 1, 1, color[3]};
+    const std::shared_ptr<const Image>& texture = material.base_color_texture;
+    if (texture && color[0] == 0 && color[1] == 0 && color[2] == 0) color = {1, 1, 1, color[3]};
+    if (!has_roughness_) material.roughness = roughness_of_highlight(material).value_or(material.roughness);
+    for (const MtlLine& line : material.mtl_lines) {
+      material.blend = material.blend || (texture && line.texture == texture && key_of(line.text) == "map_d");
+    }
   }
 
  private:
+  // False for a line that no field holds.
+  bool take_value(std::string_view key, std::string_view rest) {
+    Material& material = materials_.back();
+    float v[3] = {0, 0, 0};
+    if (key == "kd") {
+      const std::size_t n = take_numbers(rest, v, 3);
+      if (n == 1) v[1] = v[2] = v[0];
+      if (n > 0) std::transform(v, v + 3, material.base_color.begin(), share);
+      return n > 0;
+    }
+    if (key != "d" && key != "tr" && key != "pr" && key != "pm") return false;
+    if (take_numbers(rest, v, 1) == 0) return false;
+    if (key == "d") material.base_color[3] = share(v[0]);
+    if (key == "tr") material.base_color[3] = share(1 - v[0]);
+    if (key == "pm") material.metallic = share(v[0]);
+    if (key == "pr") {
+      material.roughness = share(v[0]);
+      has_roughness_ = true;
+    }
+    return true;
+  }
+
+  // The file name, which may hold blanks, stands behind the options.
+  void take_map(std::string_view whole, std::string_view key, std::string_view rest) {
+    Material& material = materials_.back();
+    bool has_options = false;
+    while (!take_option(rest).empty()) has_options = true;
+    const std::string_view name = trimmed(rest);
+    const std::shared_ptr<const Image> texture = image(name);
+    if (key == "map_kd") material.base_color_texture = texture;
+    if (key == "norm") material.normal_texture = texture;
+    const bool held = (key == "map_kd" || key == "norm") && !has_options;
+    if (texture == nullptr || texture->encoded.empty()) {
+      keep(whole);
+    } else if (!held) {
+      keep(trimmed(whole.substr(0, static_cast<std::size_t>(name.data() - whole.data()))), texture);
+    }
+  }
+
+  // Not what would spoil the lines around it.
+  void keep(std::string_view line, std::shared_ptr<const Image> texture = nullptr) {
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t'; };
+    if (std::any_of(line.begin(), line.end(), is_control)) return;
+    materials_.back().mtl_lines.push_back({std::string(line), std::move(texture)});
+  }
+
   std::shared_ptr<const Image> image(std::string_view name) {
     if (name.empty()) return nullptr;
     const auto [at, is_new] = images_.try_emplace(std::string(name));
-    if (is_new) at->second = load_image_near(folder_, name, warnings_);
-    return at->second;
+    if (!is_new) return at->second;
+    std::shared_ptr<const Image> loaded = load_image_near(folder_, name, warnings_, from_);
+    for (const auto& [other, known] : images_) {  // the same file by another name
+      if (known && known->name == loaded->name && known->encoded == loaded->encoded) loaded = known;
+    }
+    return at->second = std::move(loaded);
   }
 
   const std::filesystem::path& folder_;
+  const std::filesystem::path& from_;
   std::vector<Material>& materials_;
-  LeftOut left_out_;
   std::vector<std::string>& warnings_;
   std::map<std::string, std::shared_ptr<const Image>> images_;
-  bool open_ = false;
+  bool open_ = false, has_roughness_ = false;
 };
+
+// Options of the kept line of a map that a field holds, too: the line stands for both. Nothing without one.
+const MtlLine* line_of(const Material& material, std::string_view key, const Image* texture) {
+  for (const MtlLine& line : material.mtl_lines) {
+    if (line.texture && line.texture.get() == texture && key_of(line.text) == key) return &line;
+  }
+  return nullptr;
+}
+
+void append_map(std::string& out, const Material& material, std::string_view key, std::string_view written,
+                const Image* texture, std::span<const TextureFile> textures) {
+  const std::string_view name = texture_name(textures, texture);
+  if (name.empty()) return;
+  const MtlLine* line = line_of(material, key, texture);
+  out += fmt::format("{} {}\n", line != nullptr ? std::string_view(line->text) : written, name);
+}
+
+void append_kept(std::string& out, const Material& material, std::span<const TextureFile> textures) {
+  for (const MtlLine& line : material.mtl_lines) {
+    const std::string key = key_of(line.text);
+    const std::shared_ptr<const Image>* held = key == "map_kd" ? &material.base_color_texture
+                                               : key == "norm" ? &material.normal_texture
+                                                               : nullptr;
+    // One of these is written already, or has been replaced.
+    if (held != nullptr && *held != nullptr && !texture_name(textures, held->get()).empty()) continue;
+    if (line.texture == nullptr) {
+      out += line.text + '\n';
+    } else if (const std::string_view name = texture_name(textures, line.texture.get()); !name.empty()) {
+      out += fmt::format("{} {}\n", line.text, name);
+    }
+  }
+}
 
 }  // namespace
 
-void read_mtl(std::string_view text, const std::filesystem::path& folder, std::vector<Material>& materials,
-              std::vector<std::string>& left_out, std::vector<std::string>& warnings) {
+std::optional<float> roughness_of_highlight(const Material& material) {
+  std::optional<float> exponent;
+  bool shines = true;
+  for (const MtlLine& line : material.mtl_lines) {
+    std::string_view rest = line.text;
+    const std::string key = lower_case(next_word(rest));
+    float v[3] = {0, 0, 0};
+    const std::size_t n = key == "ns" || key == "ks" || key == "illum" ? take_numbers(rest, v, 3) : 0;
+    if (n == 0) continue;
+    if (key == "ns") exponent = std::max(v[0], 0.0F);
+    if (key == "ks") shines = shines && (v[0] > 0 || v[1] > 0 || v[2] > 0);
+    if (key == "illum") shines = shines && v[0] != 0 && v[0] != 1;
+  }
+  if (!exponent || !std::isfinite(*exponent)) return std::nullopt;
+  return shines ? std::sqrt(std::sqrt(2 / (*exponent + 2))) : 1.0F;
+}
+
+void read_mtl(std::string_view text, const std::filesystem::path& folder, const std::filesystem::path& from,
+              std::vector<Material>& materials, std::vector<std::string>& warnings) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  MtlParser parser(folder, materials, left_out, warnings);
+  MtlParser parser(folder, from, materials, warnings);
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     parser.line(text.substr(0, end));
@@ -150,15 +184,21 @@ void read_mtl(std::string_view text, const std::filesystem::path& folder, std::v
 }
 
 std::string mtl_text(std::span<const Material> materials, std::span<const std::string> names,
-                     std::span<const MtlTextures> textures) {
+                     std::span<const TextureFile> textures) {
   std::string out = "# made by Lodestone\n";
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& m = materials[i];
     const std::array<float, 4>& color = m.base_color;
     out += fmt::format("newmtl {}\nKd {} {} {}\nd {}\n", names[i], color[0], color[1], color[2], color[3]);
-    out += fmt::format("Pr {}\nPm {}\n", m.roughness, m.metallic);
-    if (!textures[i].base_color.empty()) out += fmt::format("map_Kd {}\n", textures[i].base_color);
-    if (!textures[i].normal.empty()) out += fmt::format("norm {}\n", textures[i].normal);
+    if (m.metallic != 0 || m.roughness != roughness_of_highlight(m)) {
+      out += fmt::format("Pr {}\nPm {}\n", m.roughness, m.metallic);
+    }
+    append_map(out, m, "map_kd", "map_Kd", m.base_color_texture.get(), textures);
+    append_map(out, m, "norm", "norm", m.normal_texture.get(), textures);
+    append_kept(out, m, textures);
+    if ((m.blend || m.alpha_cutoff > 0) && line_of(m, "map_d", m.base_color_texture.get()) == nullptr) {
+      append_map(out, m, "map_d", "map_d", m.base_color_texture.get(), textures);
+    }
   }
   return out;
 }

@@ -94,7 +94,9 @@ class ObjReader {
     if (key == "vn") return take_normal(scanner);
     if (key == "f" || key == "fo") return take_face(scanner);
     if (pass_ == Pass::vertices) return {};
-    if (key == "g" || key == "o") {
+    if (key == "o") {
+      materials_.set_object(trimmed(scanner.rest()));
+    } else if (key == "g") {
       materials_.set_name(trimmed(scanner.rest()));
     } else if (key == "usemtl") {
       materials_.set_material(trimmed(scanner.rest()));

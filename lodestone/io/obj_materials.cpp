@@ -3,13 +3,18 @@
 #include <map>
 
 #include "lodestone/base/file.h"
-#include "lodestone/io/image_file_detail.h"
-#include "lodestone/io/mtl.h"
+#include "lodestone/io/mtl_detail.h"
+#include "lodestone/io/near_file_detail.h"
 #include "lodestone/io/obj_materials_detail.h"
 #include "lodestone/io/read_detail.h"
 #include "lodestone/io/text_reader_detail.h"
 
 namespace lodestone::io {
+
+void ObjMaterials::set_object(std::string_view name) {
+  object_ = name;
+  set_name(name);
+}
 
 void ObjMaterials::set_name(std::string_view name) {
   name_ = name;
@@ -32,8 +37,8 @@ void ObjMaterials::add_library(std::string_view names) {
 std::uint32_t ObjMaterials::group() {
   if (group_ != kNone) return group_;
   const auto [at, is_new] =
-      group_at_.try_emplace(std::make_pair(material_, name_), static_cast<std::uint32_t>(groups_.size()));
-  if (is_new) groups_.push_back({material_, name_});
+      group_at_.try_emplace(std::make_tuple(material_, object_, name_), static_cast<std::uint32_t>(groups_.size()));
+  if (is_new) groups_.push_back({material_, name_, object_});
   return group_ = at->second;
 }
 
@@ -41,15 +46,13 @@ std::uint32_t ObjMaterials::group() {
 std::vector<Material> ObjMaterials::load_libraries(std::vector<std::filesystem::path>& files,
                                                    std::vector<std::string>& warnings) const {
   std::vector<Material> materials;
-  std::vector<std::string> left_out;
   const auto load = [&](std::string_view name) {
-    const std::optional<std::filesystem::path> path = path_inside(*folder_, name);
-    std::error_code ignored;
-    if (!path || !std::filesystem::is_regular_file(*path, ignored)) return false;
+    const std::optional<std::filesystem::path> path = find_near(*folder_, {}, name);
+    if (!path) return false;
     const Result<std::string> text = read_file(*path);
     if (!text) return false;
     files.push_back(*path);
-    read_mtl(*text, *folder_, materials, left_out, warnings);
+    read_mtl(*text, *folder_, path->parent_path().lexically_relative(*folder_), materials, warnings);
     return true;
   };
   std::size_t missing = 0;
@@ -66,9 +69,6 @@ std::vector<Material> ObjMaterials::load_libraries(std::vector<std::filesystem::
     warnings.push_back(fmt::format("{} not found in the OBJ's folder: '{}'{}",
                                    counted(missing, "material library was", "material libraries were"), first_missing,
                                    missing > 1 ? " and others" : ""));
-  }
-  if (!left_out.empty()) {
-    warnings.push_back(fmt::format("properties of materials were left out: {}", fmt::join(left_out, ", ")));
   }
   return materials;
 }

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "lodestone/core/model.h"
@@ -19,6 +19,8 @@ class ObjMaterials {
   /// `folder` is where libraries may be; null: they are not looked for.
   explicit ObjMaterials(const std::filesystem::path* folder) : folder_(folder) {}
 
+  /// `o` begins a part, `g` a group in it; without one the part's name is the group's.
+  void set_object(std::string_view name);
   void set_name(std::string_view name);
   void set_material(std::string_view name);
   void add_library(std::string_view names);
@@ -39,10 +41,10 @@ class ObjMaterials {
   std::vector<std::string> used_;                     // names of materials, in order of first use by usemtl
   std::map<std::string, std::uint32_t> material_at_;  // into used_
   std::uint32_t material_ = kNone;
-  std::string name_;
+  std::string object_, name_;
   std::vector<FaceGroup> groups_;
-  std::map<std::pair<std::uint32_t, std::string>, std::uint32_t> group_at_;
-  std::uint32_t group_ = kNone;  // of the present material and name, once a face has asked
+  std::map<std::tuple<std::uint32_t, std::string, std::string>, std::uint32_t> group_at_;
+  std::uint32_t group_ = kNone;  // of the present material, object and name, once a face has asked
 };
 
 }  // namespace lodestone::io

@@ -9,7 +9,7 @@
 #include "lodestone/base/file.h"
 #include "lodestone/io/flat_mesh_detail.h"
 #include "lodestone/io/image_file_detail.h"
-#include "lodestone/io/mtl.h"
+#include "lodestone/io/mtl_detail.h"
 #include "lodestone/io/read_detail.h"
 #include "lodestone/io/write_detail.h"
 
@@ -37,7 +37,7 @@ std::string new_word(std::string_view name, std::string_view fallback, std::set<
 struct ObjNames {
   std::vector<Material> materials;
   std::vector<std::string> material_words;  // one a material
-  std::vector<std::string> usemtl, g;       // one a group
+  std::vector<std::string> usemtl, o, g;    // one a group
 };
 
 // Without a `usemtl` of its own, a group would get that of the group before it: where some have a material, the others
@@ -62,15 +62,37 @@ void name_materials(const Model& model, const Mesh& mesh, ObjNames& names) {
   }
 }
 
-// The same for `g`; "default" is what OBJ calls faces before the first one.
-void name_groups(const Mesh& mesh, ObjNames& names) {
-  std::set<std::string> taken;
-  std::map<std::string, std::string> words;  // by name, so that groups of one name still have one
-  for (const FaceGroup& g : mesh.groups) {
-    if (!g.name.empty() && !words.contains(g.name)) words[g.name] = new_word(g.name, {}, taken);
+// A word for each name, the same for the same one; for none "default", which is what OBJ calls faces before the first
+// name, where others have one.
+class NameWords {
+ public:
+  void add(const std::string& name) {
+    if (!name.empty() && !words_.contains(name)) words_[name] = new_word(name, {}, taken_);
   }
-  if (!words.empty()) words[""] = new_word("default", {}, taken);
-  for (const FaceGroup& g : mesh.groups) names.g.push_back(words.empty() ? std::string() : words[g.name]);
+  std::string word(const std::string& name) {
+    if (words_.empty()) return {};
+    if (name.empty() && !words_.contains(name)) words_[name] = new_word("default", {}, taken_);
+    return words_[name];
+  }
+  bool empty() const { return words_.empty(); }
+
+ private:
+  std::set<std::string> taken_;
+  std::map<std::string, std::string> words_;
+};
+
+// The same for `o` and `g`. A part begins without a group, so a group that is all of its part needs no line.
+void name_groups(const Mesh& mesh, ObjNames& names) {
+  NameWords objects, groups;
+  for (const FaceGroup& g : mesh.groups) {
+    objects.add(g.object);
+    if (g.name != g.object) groups.add(g.name);
+  }
+  for (const FaceGroup& g : mesh.groups) {
+    const bool named = objects.empty() || (!g.name.empty() && g.name != g.object);
+    names.o.push_back(objects.word(g.object));
+    names.g.push_back(named ? groups.word(g.name) : std::string());
+  }
 }
 
 // The numbers of a stream, in the precision that it has.
@@ -176,12 +198,20 @@ class ObjText {
 
   void write_faces(const ObjNames& names) {
     std::uint32_t group = kNone;
-    std::string line;
+    std::string line, object, name;  // the present `o` and `g`
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       if (stop(t)) return;
       if (!mesh_.groups.empty() && mesh_.group_of(t) != group) {
         group = mesh_.group_of(t);
-        if (!names.g[group].empty()) file_.write(fmt::format("g {}\n", names.g[group]));
+        if (names.o[group] != object || (!names.o[group].empty() && names.g[group].empty() && !name.empty())) {
+          object = names.o[group];
+          name.clear();
+          file_.write(fmt::format("o {}\n", object));
+        }
+        if (!names.g[group].empty() && (object.empty() || names.g[group] != name)) {
+          name = names.g[group];
+          file_.write(fmt::format("g {}\n", name));
+        }
         if (!names.usemtl[group].empty()) file_.write(fmt::format("usemtl {}\n", names.usemtl[group]));
       }
       line = "f";
@@ -236,15 +266,10 @@ void warn_of_left_out(const Mesh& mesh, std::vector<std::string>& warnings) {
 // The .mtl and the textures that it names, written but not yet under their names.
 Result<void> write_materials(const ObjNames& names, const std::filesystem::path& path, std::vector<OutputFile>& files) {
   const std::vector<TextureFile> textures = texture_files(names.materials, path, true);
-  std::vector<MtlTextures> texture_names;
-  for (const Material& m : names.materials) {
-    texture_names.push_back({std::string(texture_name(textures, m.base_color_texture.get())),
-                             std::string(texture_name(textures, m.normal_texture.get()))});
-  }
   Result<OutputFile> mtl =
       OutputFile::create(std::filesystem::path(path).replace_filename(path.stem().string() + ".mtl"));
   if (!mtl) return fail(mtl.error());
-  mtl->write(mtl_text(names.materials, names.material_words, texture_names));
+  mtl->write(mtl_text(names.materials, names.material_words, textures));
   files.push_back(std::move(*mtl));
   for (const TextureFile& texture : textures) {
     Result<OutputFile> image = write_texture(texture, path);
