@@ -10,7 +10,8 @@
 
 namespace lodestone::io {
 
-/// Writes the whole scene as one OBJ: groups, materials in name.mtl, textures beside it, UVs and normals by corner,
+/// Writes the whole scene as one OBJ: parts, groups, materials in name.mtl with the lines that an MTL gave, textures
+/// beside it, UVs and normals by corner,
 /// colours behind the coordinates. Where only some groups have a name or a material, the others are in a group
 /// "default" with a white material "none" (with '_' appended where these are taken). Numbers in the shortest form that
 /// reads back the same. All files appear together or none. Warns of attributes that OBJ has no place for, of colours'
