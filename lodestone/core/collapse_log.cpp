@@ -1,13 +1,16 @@
 #include "lodestone/core/collapse_log.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
+#include <string>
 #include <utility>
 
-#include "lodestone/base/check.h"
 #include "lodestone/base/parallel.h"
 #include "lodestone/core/blend.h"
 #include "lodestone/core/corner_normals.h"
+#include "lodestone/core/validate.h"
 
 namespace lodestone {
 
@@ -161,6 +164,21 @@ void compact(const Mesh& mesh, const CollapseLog& log, std::size_t count, Replay
   pick_tuples(blend_attributes(mesh, log, count), kept_wedges, out.mesh);
 }
 
+Result<void> check(const Mesh& mesh, const CollapseLog& log, std::size_t count, const ReplayOptions& options,
+                   const Task& task) {
+  const auto bad = [](std::string what) { return fail(ErrorCode::bad_argument, std::move(what), "replay"); };
+  if (count > log.collapses.size()) {
+    return bad(fmt::format("{} collapses are asked for, the log has {}", count, log.collapses.size()));
+  }
+  for (const std::vector<std::uint8_t>* list : {&options.left_out, &options.untouched}) {
+    if (list->empty() || list->size() == mesh.triangles.size()) continue;
+    return bad(fmt::format("a list of {} triangles is about {}", list->size(), mesh.triangles.size()));
+  }
+  if (options.input == Input::valid) return {};
+  if (const Result<void> ok = validate(mesh, task); !ok) return ok;
+  return validate(log, mesh, task);
+}
+
 }  // namespace
 
 Result<ReplayResult> replay(const Mesh& mesh, const CollapseLog& log, std::size_t count, Task task) {
@@ -169,7 +187,7 @@ Result<ReplayResult> replay(const Mesh& mesh, const CollapseLog& log, std::size_
 
 Result<ReplayResult> replay(const Mesh& mesh, const CollapseLog& log, std::size_t count, const ReplayOptions& options,
                             Task task) {
-  LODESTONE_CHECK(count <= log.collapses.size(), "a prefix is not longer than the log");
+  if (const Result<void> ok = check(mesh, log, count, options, task); !ok) return fail(ok.error());
   ReplayResult out;
   out.mesh.name = mesh.name;
   out.mesh.offset = mesh.offset;

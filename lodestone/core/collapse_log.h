@@ -7,6 +7,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/core/input.h"
 #include "lodestone/core/mesh.h"
 
 namespace lodestone {
@@ -55,11 +56,13 @@ struct ReplayOptions {
   std::vector<std::uint8_t> left_out;   ///< not in the result: its part has vanished
   std::vector<std::uint8_t> untouched;  ///< as it was to the bit, though degenerate or doubled; its vertices must have
                                         ///< been locked in the run
+  Input input = Input::unchecked;       ///< of mesh and log
 };
 
 /// Applies the first `count` collapses of `log` to `mesh`, the mesh that the log was made from. Attributes: blended
 /// ones interpolated, normals and tangents unit again, weights pruned to the sets there are and summing to one. O(mesh
-/// + count). Errors: cancelled.
+/// + count). Errors: bad_argument (those of validate(), of mesh and log; a count above the log's; lists of `options`
+/// with another length than the triangles), cancelled.
 Result<ReplayResult> replay(const Mesh& mesh, const CollapseLog& log, std::size_t count, Task task = {});
 Result<ReplayResult> replay(const Mesh& mesh, const CollapseLog& log, std::size_t count, const ReplayOptions& options,
                             Task task = {});

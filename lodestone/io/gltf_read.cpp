@@ -55,7 +55,7 @@ Result<void> read_meshes(const Document::Data& data, Model& model, Budget& budge
     Result<Mesh> welded = weld_exact(std::move(*mesh), part);
     if (!welded) return fail(welded.error());
     if (const Result<void> ok = validate(*welded); !ok) {
-      return fail(ok.error().code, ok.error().what, place(data, "mesh", i), ok.error().remedy);
+      return fail(ErrorCode::bad_format, ok.error().what, place(data, "mesh", i), ok.error().remedy);
     }
     model.meshes.push_back(std::move(*welded));
   }

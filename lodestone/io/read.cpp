@@ -145,6 +145,7 @@ Result<Model> read_named(const std::filesystem::path& path, const ReadOptions& o
   if (!is_foreign_extension(extension)) return model;  // our own readers have looked already
   if (const Result<void> ok = validate(*model); !ok) {
     Error error = ok.error();
+    error.code = ErrorCode::bad_format;
     error.where = error.where.empty() ? path.string() : path.string() + ": " + error.where;
     return fail(std::move(error));
   }

@@ -150,6 +150,7 @@ Result<Model> finish_model(Model model, std::string_view name, std::uint64_t fir
   if (!welded) return fail(welded.error());
   mesh = std::move(*welded);
   if (Result<void> valid = validate(model); !valid) {
+    valid.error().code = ErrorCode::bad_format;
     valid.error().where = std::string(name);
     return fail(valid.error());
   }
