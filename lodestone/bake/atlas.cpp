@@ -10,6 +10,7 @@
 #include "lodestone/bake/pack_detail.h"
 #include "lodestone/base/parallel.h"
 #include "lodestone/core/tangents.h"
+#include "lodestone/core/validate.h"
 
 namespace lodestone::bake {
 
@@ -97,6 +98,7 @@ void add_coordinates(const std::vector<FlatChart>& charts, const Packing& packin
 
 Result<Atlas> make_atlas(const Mesh& target, const AtlasOptions& options, Task task) {
   if (const Result<void> ok = check(target, options); !ok) return fail(ok.error());
+  if (const Result<void> ok = validate(target, task); !ok) return fail(ok.error());
   task = task.part(1, "atlas");
   const detail::Neighbors neighbors = detail::neighbors_of(target, task);
   const std::vector<std::uint32_t> rough = detail::make_charts(target, neighbors, task.part(0.5));

@@ -29,8 +29,8 @@ struct Atlas {
 /// Cuts the target into charts that are nearly flat, lays each out by a projection along its mean normal, and packs
 /// them into one square. No two triangles overlap; none is turned over; a triangle that is tilted against its chart's
 /// plane gets less texels, at worst a fifth, usually more than half. Same bytes for any thread count. O(n log n).
-/// Errors: empty (no triangle), bad_argument (a size out of range; too many charts for the texture's gutters),
-/// cancelled.
+/// Errors: empty (no triangle), bad_argument (a size out of range; too many charts for the texture's gutters; those of
+/// validate(), of the target), cancelled.
 Result<Atlas> make_atlas(const Mesh& target, const AtlasOptions& options = {}, Task task = {});
 
 }  // namespace lodestone::bake

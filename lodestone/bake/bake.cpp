@@ -12,6 +12,7 @@
 #include "lodestone/base/parallel.h"
 #include "lodestone/core/srgb.h"
 #include "lodestone/core/tangents.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/spatial/smooth_normals.h"
 
 namespace lodestone::bake {
@@ -241,6 +242,7 @@ Pixels blank(std::uint32_t size) {
 
 Result<Baked> bake_textures(const Mesh& target, const BakeSource& source, const BakeOptions& options, Task task) {
   if (const Result<void> ok = check(target, options); !ok) return fail(ok.error());
+  if (const Result<void> ok = validate(target, task); !ok) return fail(ok.error());
   const std::uint32_t size = options.texture_size;
   Baked out;
   out.mesh = target;

@@ -5,6 +5,7 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/core/tangents.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/spatial/smooth_normals.h"
 
 namespace lodestone::bake {
@@ -80,6 +81,7 @@ void set_colors(Mesh& mesh, const std::vector<Tuple>& tuples) {
 Result<Mesh> transfer_attributes(const Mesh& target, const BakeSource& source, const TransferOptions& options,
                                  Task task) {
   if (target.triangles.empty()) return fail(ErrorCode::empty, "the target has no triangle");
+  if (const Result<void> ok = validate(target, task); !ok) return fail(ok.error());
   task = task.part(1, "attributes");
   const std::vector<Tuple> tuples = tuples_of(target, source, task);
   if (task.cancelled()) return cancelled_error("transfer of attributes");

@@ -15,7 +15,7 @@ struct TransferOptions {
 /// world space. Where the source's normal points away from the target's own smooth one by more than a right angle, that
 /// one is taken. Streams of these names are replaced and tangents, which would be stale, left out; all others stay, and
 /// so do wedges: all of a vertex get the same. Same bytes for any thread count. O(vertices log source).
-/// Errors: empty (no triangle), cancelled.
+/// Errors: bad_argument (those of validate(), of the target), empty (no triangle), cancelled.
 Result<Mesh> transfer_attributes(const Mesh& target, const BakeSource& source, const TransferOptions& options = {},
                                  Task task = {});
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "lodestone/base/stopwatch.h"
+#include "lodestone/core/validate.h"
 
 namespace lodestone::chain {
 
@@ -39,6 +40,10 @@ Result<void> check(std::span<const Model> models, const BooleanOptions& options)
 
 Result<BooleanResult> boolean(std::span<const Model> models, const BooleanOptions& options, Task task) {
   if (const Result<void> ok = check(models, options); !ok) return fail(ok.error());
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const Result<void> ok = validate(models[i], task);
+    if (!ok) return fail(ok.error().code, ok.error().what, fmt::format("model {}, {}", i + 1, ok.error().where));
+  }
   BooleanResult out;
   Stopwatch watch;
   Model scene = joined(models);
@@ -71,7 +76,7 @@ Result<BooleanResult> boolean(std::span<const Model> models, const BooleanOption
     if (!combined) return fail(combined.error());
   }
   if (solid->volume.set_count() == 0) return fail(ErrorCode::empty, "nothing is left: the result has no volume");
-  Result<spatial::Surface> surface = spatial::flatten(scene, task);
+  Result<spatial::Surface> surface = spatial::flatten(scene, Input::valid, task);
   if (!surface) return fail(surface.error());
   solid->surface = std::move(*surface);
   out.seconds.prepare = watch.total() - out.seconds.voxelize;

@@ -30,8 +30,8 @@ struct BooleanResult {
 };
 
 /// Solids of all models in one grid, combined, contoured, and moved onto the surfaces of the models. Closed and
-/// manifold. Errors: bad_argument (no models, operations that don't fit, units that differ), empty (nothing left),
-/// out_of_memory, cancelled.
+/// manifold. Errors: bad_argument (no models, operations that don't fit, units that differ; those of validate()), empty
+/// (nothing left), out_of_memory, cancelled.
 Result<BooleanResult> boolean(std::span<const Model> models, const BooleanOptions& options, Task task = {});
 
 }  // namespace lodestone::chain

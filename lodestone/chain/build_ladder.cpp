@@ -13,6 +13,7 @@
 #include "lodestone/chain/ladder_detail.h"
 #include "lodestone/chain/level_error_detail.h"
 #include "lodestone/chain/level_maker_detail.h"
+#include "lodestone/core/validate.h"
 
 namespace lodestone::chain {
 
@@ -190,7 +191,9 @@ Result<void> add_error_levels(LadderResult& result, LevelMaker& maker, const Lad
   return {};
 }
 
-Result<void> check_drawn(const Model& original) {
+// The original itself, too: from here on it counts as valid.
+Result<void> check_drawn(const Model& original, const Task& task) {
+  if (const Result<void> ok = validate(original, task); !ok) return ok;
   if (drawn_triangles(original) > 0) return {};
   return fail(ErrorCode::empty, "the model draws no triangle", {}, "is a scene with meshes in the file?");
 }
@@ -210,9 +213,13 @@ std::vector<std::size_t> detail::count_targets(const LadderOptions& options, std
   return targets;
 }
 
-Result<void> detail::check_ladder(const Model& original, const LadderOptions& options) {
+Result<void> detail::check_ladder(const Model& original, const LadderOptions& options, const Task& task) {
   if (const Result<void> ok = check(options); !ok) return ok;
-  return check_drawn(original);
+  if (options.start) {
+    const Result<void> ok = validate(*options.start, task);
+    if (!ok) return fail(ok.error().code, ok.error().what, "start, " + ok.error().where);
+  }
+  return check_drawn(original, task);
 }
 
 Level detail::original_level(const Model& original, double diagonal) {
@@ -226,7 +233,9 @@ Level detail::original_level(const Model& original, double diagonal) {
 
 Result<void> detail::compare_pictures(LadderResult& result, const measure::ImageOptions& options, const Task& task) {
   const Stopwatch watch;
-  const auto reference = measure::ImageReference::create(result.ladder.original, options, task.part(0.2));
+  measure::ImageOptions of_valid = options;
+  of_valid.input = Input::valid;
+  const auto reference = measure::ImageReference::create(result.ladder.original, of_valid, task.part(0.2));
   if (!reference) return fail(reference.error());
   const std::size_t levels = result.ladder.levels.size();
   for (std::size_t i = 0; i < levels; ++i) {
@@ -251,7 +260,7 @@ Shares shares_of(Effort effort) { return effort == Effort::fast ? Shares{0.4, 0.
 }  // namespace
 
 Result<LadderResult> build_ladder(Model original, const LadderOptions& options, Task task) {
-  if (const Result<void> ok = detail::check_ladder(original, options); !ok) return fail(ok.error());
+  if (const Result<void> ok = detail::check_ladder(original, options, task); !ok) return fail(ok.error());
   const std::vector<std::size_t> targets = detail::count_targets(options, drawn_triangles(original));
   const std::size_t smallest = options.errors.empty() ? targets.back() : 1;
 
@@ -289,7 +298,7 @@ Result<SimplifyModelResult> simplify_model(const Model& original, const Simplify
     return bad(by_count ? "a triangle count and an error are asked for at once" : "no target is asked for",
                "give a triangle count, a ratio or an error");
   }
-  if (const Result<void> ok = check_drawn(original); !ok) return fail(ok.error());
+  if (const Result<void> ok = check_drawn(original, task); !ok) return fail(ok.error());
   const Shares shares = shares_of(options.effort);
   const Stopwatch collapsing;
   const Result<CollapsePlan> plan = CollapsePlan::create(original, by_count ? options.target_triangles : 1,

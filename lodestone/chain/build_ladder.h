@@ -59,7 +59,8 @@ struct LadderResult {
 /// shortfall. With an effort above fast each level is shaped by its own measured error, and kept only if neither its
 /// maximum nor its mean (of normal: by more than a hundredth; not for errors, which are about maxima) is above the
 /// plain level's; it is no prefix of the record then, which its method tells, and an error is looked for with shaped
-/// levels. Errors: bad_argument, empty (nothing drawn), cancelled.
+/// levels. Errors: bad_argument (options that contradict each other; those of validate(), of the original and the
+/// start), empty (nothing drawn), cancelled.
 Result<LadderResult> build_ladder(Model original, const LadderOptions& options = {}, Task task = {});
 
 struct SimplifyModelOptions {
@@ -79,7 +80,7 @@ struct SimplifyModelResult {
   double simplify_seconds = 0, measure_seconds = 0;
 };
 
-/// One level instead of a ladder. Errors: bad_argument (no target or both), empty, cancelled.
+/// One level instead of a ladder. Errors: bad_argument (no target or both; those of validate()), empty, cancelled.
 Result<SimplifyModelResult> simplify_model(const Model& original, const SimplifyModelOptions& options, Task task = {});
 
 /// MSFT_screencoverage for each instance of the original and each level: the share of the screen that the instance's

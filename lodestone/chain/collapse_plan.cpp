@@ -81,6 +81,7 @@ Result<void> CollapsePlan::plan_mesh(std::size_t m, std::size_t target, const In
   options.attribute_weights = influence.attribute_weights;
   options.metric = placings_[m];
   options.record_log = true;
+  options.input = Input::valid;
   Result<simplify::EdgeCollapseResult> run =
       simplify::collapse_edges(mesh(m), options, influence.vanishes() ? task.part(0.7) : task);
   if (!run) return fail(run.error());
@@ -94,6 +95,7 @@ Result<void> CollapsePlan::plan_mesh(std::size_t m, std::size_t target, const In
   if (influence.keep_border) lock_borders(mesh(m), thin.locked, task);
   thin.left_out = logs_[m].dropped;
   thin.metric = placings_[m];
+  thin.input = Input::valid;
   Result<simplify::ThinParts> parts = simplify::thin_parts(mesh(m), thin, task.part(0.3));
   if (!parts) return fail(parts.error());
   thin_[m] = std::move(*parts);
@@ -218,6 +220,7 @@ Result<Model> CollapsePlan::model_after(std::size_t count, Task task) const {
 Result<Mesh> CollapsePlan::mesh_after(std::size_t m, const Progress& progress, double error, const Task& task) const {
   const simplify::ThinParts& thin = thin_[m];
   ReplayOptions options;
+  options.input = Input::valid;
   if (!untouched_.empty()) options.untouched = untouched_[m];
   std::vector<double> area = thin.area;  // that each part stands for
   if (progress.vanishings > 0) {

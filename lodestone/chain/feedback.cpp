@@ -164,6 +164,7 @@ Result<bool> holds_goal(const ShapeSource& source, FittedLevel& level, const Tas
   measure::DistanceOptions options;
   options.samples = kCertifySamples;
   options.queries = kCertifyQueries;
+  options.input = Input::valid;
   const Result<measure::Distance> d = source.reference->distance_to(make_model(Mesh(level.mesh())), options, task);
   if (!d) return fail(d.error());
   const double most = kCertify * source.goal;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "lodestone/core/validate.h"
+
 namespace lodestone::chain {
 
 namespace {
@@ -73,6 +75,7 @@ void add_spheres(const Model& model, std::size_t mesh_index, const std::vector<I
 }  // namespace
 
 Result<std::vector<VertexInfluence>> vertex_influences(const Model& model, const Influence& influence) {
+  if (const Result<void> ok = validate(model); !ok) return fail(ok.error());
   std::vector<VertexInfluence> out(model.meshes.size());
   const Result<std::vector<std::vector<std::uint8_t>>> untouched = untouched_triangles(model, influence);
   if (!untouched) return fail(untouched.error());

@@ -60,7 +60,7 @@ struct VertexInfluence {
 
 /// One entry a mesh. A vertex is in a sphere when any instance places it there. Outside all spheres, and in meshes
 /// without the attribute, the weight is 1. Errors: bad_argument (no mesh has the attribute; a value is negative; those
-/// of untouched_triangles()).
+/// of untouched_triangles() and validate()).
 Result<std::vector<VertexInfluence>> vertex_influences(const Model& model, const Influence& influence);
 
 /// The triangles of each mesh that `influence.only` doesn't name, non-zero = must not change; empty when it names none.

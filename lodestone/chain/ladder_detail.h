@@ -11,8 +11,9 @@
 
 namespace lodestone::chain::detail {
 
-/// Errors: bad_argument (options that contradict each other, lists that don't fall or rise), empty (nothing drawn).
-Result<void> check_ladder(const Model& original, const LadderOptions& options);
+/// Errors: bad_argument (options that contradict each other, lists that don't fall or rise; those of validate(), of the
+/// original and what levels start from), empty (nothing drawn), cancelled.
+Result<void> check_ladder(const Model& original, const LadderOptions& options, const Task& task);
 
 /// Wanted drawn triangles of each coarser level.
 std::vector<std::size_t> count_targets(const LadderOptions& options, std::size_t drawn);

@@ -8,6 +8,12 @@
 
 namespace lodestone::chain::detail {
 
+/// The same for levels that were made here, which need not be validated.
+inline measure::DistanceOptions of_valid(measure::DistanceOptions options) {
+  options.input = Input::valid;
+  return options;
+}
+
 /// `finer` is the error of the level before, as errors never fall along a ladder; 0 for the first.
 inline LevelError level_error(const measure::Distance& d, double finer = 0) {
   LevelError e;

@@ -33,7 +33,10 @@ const char* method_of(Effort effort) {
 
 LevelMaker::LevelMaker(const CollapsePlan& plan, const Reference& reference, const measure::DistanceOptions& distance,
                        Effort effort)
-    : plan_(plan), reference_(reference), distance_(distance), effort_(plan.can_be_shaped() ? effort : Effort::fast) {}
+    : plan_(plan),
+      reference_(reference),
+      distance_(of_valid(distance)),
+      effort_(plan.can_be_shaped() ? effort : Effort::fast) {}
 
 Result<Cut> LevelMaker::plain(std::size_t prefix, const Task& task) const {
   Cut cut;

@@ -45,7 +45,7 @@ class LevelMaker {
 
   const CollapsePlan& plan_;
   const measure::Reference& reference_;
-  const measure::DistanceOptions& distance_;
+  const measure::DistanceOptions distance_;
   Effort effort_;
   FitTargets targets_;
 };

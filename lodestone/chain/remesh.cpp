@@ -6,6 +6,7 @@
 #include "lodestone/chain/build_ladder.h"
 #include "lodestone/chain/level_error_detail.h"
 #include "lodestone/chain/voxel_search_detail.h"
+#include "lodestone/core/validate.h"
 
 namespace lodestone::chain {
 
@@ -71,7 +72,7 @@ Result<void> finish_level(const Model& model, const RemeshOptions& options, Voxe
   level.model = make_model(std::move(cut.mesh), model);
   if (reference != nullptr && !cut.distance) {
     const Stopwatch measuring;
-    const Result<measure::Distance> d = reference->distance_to(level.model, options.distance, task);
+    const Result<measure::Distance> d = reference->distance_to(level.model, detail::of_valid(options.distance), task);
     if (!d) return fail(d.error());
     cut.distance = *d;
     out.seconds.measure += measuring.total();
@@ -85,6 +86,7 @@ Result<void> finish_level(const Model& model, const RemeshOptions& options, Voxe
 
 Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Task task) {
   if (const Result<void> ok = check(options); !ok) return fail(ok.error());
+  if (const Result<void> ok = validate(model, task); !ok) return fail(ok.error());
   const VoxelTarget target{options.resolution, options.triangles, options.error, options.then_collapse};
   RemeshResult out;
   const Stopwatch watch;

@@ -42,8 +42,8 @@ struct RemeshResult {
 
 /// Voxelizes the model's default scene and contours it. A count is predicted from coarser runs, as triangles grow with
 /// the square of the resolution (paper 000, section 3.4); an error is found by measuring. Errors: bad_argument (both
-/// targets; then_collapse without one; a resolution beside a target without it; options out of range), empty,
-/// out_of_memory, cancelled.
+/// targets; then_collapse without one; a resolution beside a target without it; options out of range; those of
+/// validate()), empty, out_of_memory, cancelled.
 Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options = {}, Task task = {});
 
 }  // namespace lodestone::chain

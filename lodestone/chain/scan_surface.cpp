@@ -9,6 +9,7 @@
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/units.h"
 #include "lodestone/chain/scan_colors_detail.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/points/normals.h"
 #include "lodestone/spatial/bvh.h"
 #include "lodestone/spatial/closest_batch.h"
@@ -27,7 +28,7 @@ struct Distances {
 
 // From points to the surface.
 Result<Distances> distances_of(const PointCloud& cloud, const Model& model, const Task& task) {
-  const Result<spatial::Surface> surface = spatial::flatten(model, task);
+  const Result<spatial::Surface> surface = spatial::flatten(model, Input::valid, task);
   if (!surface) return fail(surface.error());
   const spatial::Bvh tree(*surface, task);
   constexpr std::size_t kChunk = 4096;
@@ -103,6 +104,7 @@ Result<Mesh> contour_distance(const PointCloud& cloud, const voxel::ScanOptions&
 }  // namespace
 
 Result<ScanSurface> surface_of_scan(PointCloud cloud, const ScanSurfaceOptions& options, Task task) {
+  if (const Result<void> ok = validate(cloud, task); !ok) return fail(ok.error());
   ScanSurface out;
   std::vector<std::string> warnings = cloud.warnings;
   voxel::ScanOptions scan;

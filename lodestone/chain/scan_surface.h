@@ -32,7 +32,7 @@ struct ScanSurface {
 /// Signed distances to planes of the nearest points (or `splat`), contoured. Normals that the cloud has not are
 /// estimated and oriented. Open scans are cut back to where points are. Colours of points come out as COLOR_0 of the
 /// vertices: of the nearest points averaged, as light (points hold sRGB). O(points log points + voxels). Errors: those
-/// of voxel::scan_distance.
+/// of voxel::scan_distance and validate().
 Result<ScanSurface> surface_of_scan(PointCloud cloud, const ScanSurfaceOptions& options = {}, Task task = {});
 
 }  // namespace lodestone::chain

@@ -82,7 +82,9 @@ Result<Mesh> CollapsePlan::shaped(std::size_t m, Mesh plain, Effort effort, doub
   Mesh finer;
   const bool weighs = !options.weights.empty();  // weights are about the vertices of the original
   if (!weighs && kFiner * triangles < log.start_triangles) {
-    Result<ReplayResult> replayed = replay(mesh(m), log, log.prefix_for(kFiner * triangles), task);
+    ReplayOptions of_valid;
+    of_valid.input = Input::valid;
+    Result<ReplayResult> replayed = replay(mesh(m), log, log.prefix_for(kFiner * triangles), of_valid, task);
     if (!replayed) return fail(replayed.error());
     finer = std::move(replayed->mesh);
   }

@@ -7,6 +7,7 @@
 
 #include "lodestone/base/memory.h"
 #include "lodestone/base/units.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/measure/shape.h"
 
 namespace lodestone::chain {
@@ -86,6 +87,7 @@ Result<VoxelGrid> solid_grid(const Box3d& bounds, const FillChoice& choice, cons
 }
 
 Result<Solid> solid_of(const Model& model, const FillChoice& choice, const SolidOptions& options, Task task) {
+  if (const Result<void> ok = validate(model, task); !ok) return fail(ok.error());
   const Result<VoxelGrid> grid = solid_grid(bounds_of(model), choice, options);
   if (!grid) return fail(grid.error());
   return solid_in(model, choice, *grid, task);
@@ -108,7 +110,7 @@ Result<Solid> solid_in(const Model& model, const FillChoice& choice, const Voxel
   if (const Result<void> room = check_memory(grid, wraps ? 2.5 : 0.125); !room) return fail(room.error());
   Result<spatial::Surface> surface = spatial::flatten(model, task.part(0.3));
   if (!surface) return fail(surface.error());
-  const voxel::VoxelizeOptions fill{choice.fill, close_voxels(choice, grid.spacing.x)};
+  const voxel::VoxelizeOptions fill{choice.fill, close_voxels(choice, grid.spacing.x), Input::valid};
   Result<voxel::Voxelized> made = voxel::voxelize(*surface, grid, fill, task.part(0.7));
   if (!made) return fail(made.error());
   if (made->volume.set_count() == 0) {

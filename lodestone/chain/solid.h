@@ -30,7 +30,7 @@ struct FillChoice {
 voxel::FillRule fill_for(const Topology& topology);
 
 /// For what the default scene draws; `asked` rules where there is one. O(n log n). Errors: bad_argument (parity asked
-/// for an open surface), cancelled.
+/// for an open surface; those of validate()), cancelled.
 Result<FillChoice> choose_fill(const Model& model, std::optional<voxel::FillRule> asked, const Task& task = {});
 
 struct SolidOptions {
@@ -47,8 +47,8 @@ struct Solid {
 };
 
 /// Voxelizes the default scene: world space, all instances. Errors: empty (nothing drawn, no voxel inside),
-/// bad_argument (as voxel::grid_around), out_of_memory (more than the machine has left: the line says how much),
-/// cancelled.
+/// bad_argument (as voxel::grid_around; those of validate()), out_of_memory (more than the machine has left: the line
+/// says how much), cancelled.
 Result<Solid> solid_of(const Model& model, const FillChoice& choice, const SolidOptions& options = {}, Task task = {});
 
 /// The same in a given grid. Errors as above.

@@ -11,6 +11,7 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/units.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/voxel/filter.h"
 #include "lodestone/voxel/isosurface.h"
 
@@ -297,6 +298,7 @@ double otsu_threshold(const VolumeValues& values, double least, double most) {
 }
 
 Result<VolumeSurface> surface_of(const ScannedVolume& volume, const VolumeSurfaceOptions& options, Task task) {
+  if (const Result<void> ok = validate(volume); !ok) return fail(ok.error());
   VolumeSurface out;
   const Range range = std::visit([&](const auto& values) { return range_of(values, task); }, volume.values);
   if (task.cancelled()) return cancelled_error("contouring");

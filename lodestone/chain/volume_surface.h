@@ -27,8 +27,8 @@ struct VolumeSurface {
 };
 
 /// The surface at native resolution, closed where the volume ends. Errors: bad_argument (iso outside of the values: the
-/// error says their range; labels that aren't whole numbers, are more than 4096, or look like grey values), bad_format
-/// (no value is a number), empty (nothing above), cancelled.
+/// error says their range; labels that aren't whole numbers, are more than 4096, or look like grey values; those of
+/// validate()), bad_format (no value is a number), empty (nothing above), cancelled.
 Result<VolumeSurface> surface_of(const ScannedVolume& volume, const VolumeSurfaceOptions& options = {}, Task task = {});
 
 /// The value that best parts values in two: Otsu, A threshold selection method from gray-level histograms, IEEE

@@ -34,7 +34,7 @@ Result<Level> make_level(VoxelCut cut, const Model& original, double finer_error
   level.model = make_model(std::move(cut.mesh), original);
   if (!cut.distance) {
     const Stopwatch measuring;
-    Result<measure::Distance> d = reference.distance_to(level.model, distance, task);
+    Result<measure::Distance> d = reference.distance_to(level.model, detail::of_valid(distance), task);
     if (!d) return fail(d.error());
     cut.distance = *d;
     measure_seconds += measuring.total();
@@ -100,7 +100,7 @@ Result<LadderResult> collapse_levels(Model original, const LadderOptions& option
 
 Result<LadderResult> build_voxel_ladder(Model original, const LadderOptions& options, const VoxelLadderOptions& voxels,
                                         Task task) {
-  if (const Result<void> ok = detail::check_ladder(original, options); !ok) return fail(ok.error());
+  if (const Result<void> ok = detail::check_ladder(original, options, task); !ok) return fail(ok.error());
   if (original.meshes.size() != 1 || original.instances.size() != 1) {
     return fail(ErrorCode::bad_argument, "levels by voxels need an original of one mesh", {},
                 "flatten the scene first");

@@ -8,6 +8,7 @@
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 #include "lodestone/core/parts.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/simplify/edge_collapse.h"
 #include "lodestone/voxel/edge_ratio.h"
 #include "lodestone/voxel/isosurface.h"
@@ -99,7 +100,7 @@ Result<VoxelLevels> VoxelLevels::create(const Model& model, const VoxelOptions& 
   }
   Result<Solid> solid = solid_in(model, *choice, *grid, task.part(0.6));
   if (!solid) return fail(solid.error());
-  Result<VoxelLevels> made = of_solid(std::move(*solid), *choice, options, task);
+  Result<VoxelLevels> made = of_valid(std::move(*solid), *choice, options, task);
   if (!made) return made;
   made->seconds_.prepare = watch.total() - made->seconds_.voxelize;
   return made;
@@ -113,7 +114,7 @@ Result<VoxelLevels> VoxelLevels::of_grid(const Model& model, const VoxelGrid& gr
   if (!surface) return fail(surface.error());
   solid.surface = std::move(*surface);
   solid.volume.grid = grid;
-  Result<VoxelLevels> out = of_solid(std::move(solid), fill, options, task);
+  Result<VoxelLevels> out = of_valid(std::move(solid), fill, options, task);
   if (out) out->slabs_ = true;
   return out;
 }
@@ -131,7 +132,8 @@ Result<Mesh> VoxelLevels::surface_by_slabs(std::uint32_t resolution, const Task&
   VoxelGrid level = grid;
   level.size = size;
   if (const Result<void> room = check_memory(level, 0.2); !room) return fail(room.error());
-  Result<voxel::SlabSurface> made = voxel::slab_surface(solid_->surface, grid, size, {fill_.fill}, task);
+  Result<voxel::SlabSurface> made =
+      voxel::slab_surface(solid_->surface, grid, size, {fill_.fill, 0, Input::valid}, task);
   if (!made) return fail(made.error());
   Stopwatch watch;
   voxel::project(made->mesh, *source_, grid.spacing.x * ratio, task);
@@ -145,6 +147,13 @@ Result<Mesh> VoxelLevels::surface_by_slabs(std::uint32_t resolution, const Task&
 }
 
 Result<VoxelLevels> VoxelLevels::of_solid(Solid solid, const FillChoice& fill, const VoxelOptions& options, Task task) {
+  if (const Result<void> ok = validate(solid.volume); !ok) return fail(ok.error());
+  if (const Result<void> ok = validate(solid.surface, task); !ok) return fail(ok.error());
+  return of_valid(std::move(solid), fill, options, task);
+}
+
+Result<VoxelLevels> VoxelLevels::of_valid(Solid solid, const FillChoice& fill, const VoxelOptions& options,
+                                          const Task& task) {
   VoxelLevels out;
   out.options_ = options;
   out.fill_ = fill;
@@ -179,6 +188,7 @@ Result<Mesh> VoxelLevels::surface_at(std::uint32_t resolution, Task task) {
   simplify::EdgeCollapseOptions options;
   const double voxel = solid_->volume.grid.spacing.x * most_resolution() / resolution;
   options.max_error = options_.adaptive * voxel;
+  options.input = Input::valid;
   Result<simplify::EdgeCollapseResult> merged = simplify::collapse_edges(*mesh, options, task);
   if (!merged) return fail(merged.error());
   seconds_.collapse += watch.total();
@@ -232,7 +242,7 @@ Result<Mesh> VoxelLevels::even_surface_at(std::uint32_t resolution, const Task& 
 
 std::vector<std::string> VoxelLevels::vanished(const Model& model, const Mesh& surface,
                                                std::uint32_t resolution) const {
-  const Result<spatial::Surface> flat = spatial::flatten(make_model(surface));
+  const Result<spatial::Surface> flat = spatial::flatten(make_model(surface), Input::valid);
   if (!flat) return {};
   const spatial::Bvh tree(*flat);
   const double voxel = solid_->volume.grid.spacing.x * most_resolution() / resolution;

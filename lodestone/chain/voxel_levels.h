@@ -49,11 +49,12 @@ struct VoxelSeconds {
 class VoxelLevels {
  public:
   /// A solid for levels of up to `finest` voxels along the longest side. Errors: bad_argument (options out of range, a
-  /// resolution that needs more than 65,535 voxels a side), empty, out_of_memory, cancelled.
+  /// resolution that needs more than 65,535 voxels a side; those of validate()), empty, out_of_memory, cancelled.
   static Result<VoxelLevels> create(const Model& model, const VoxelOptions& options, std::uint32_t finest,
                                     Task task = {});
 
-  /// For a solid that is there already, and the surface that vertices are moved to. Errors: none yet.
+  /// For a solid that is there already, and the surface that vertices are moved to. Errors: bad_argument (those of
+  /// validate(), of both), cancelled.
   static Result<VoxelLevels> of_solid(Solid solid, const FillChoice& fill, const VoxelOptions& options, Task task = {});
 
   /// The surface with so many voxels along the longest side, their margin of one at both ends counted; 4 to the
@@ -71,6 +72,8 @@ class VoxelLevels {
   std::vector<std::string> vanished(const Model& model, const Mesh& surface, std::uint32_t resolution) const;
 
  private:
+  static Result<VoxelLevels> of_valid(Solid solid, const FillChoice& fill, const VoxelOptions& options,
+                                      const Task& task);
   static Result<VoxelLevels> of_grid(const Model& model, const VoxelGrid& grid, const FillChoice& fill,
                                      const VoxelOptions& options, const Task& task);
   Result<Mesh> even_surface_at(std::uint32_t resolution, const Task& task);

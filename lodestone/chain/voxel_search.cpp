@@ -1,3 +1,4 @@
+#include "lodestone/chain/level_error_detail.h"
 #include "lodestone/chain/voxel_search_detail.h"
 
 #include <fmt/format.h>
@@ -103,7 +104,7 @@ Result<VoxelCut> find_error(VoxelLevels& levels, double limit, std::uint32_t gue
     double error = 0;
     if (mesh) {
       cut.mesh = std::move(*mesh);
-      const Result<measure::Distance> d = reference.distance_to(make_model(cut.mesh), distance, task);
+      const Result<measure::Distance> d = reference.distance_to(make_model(cut.mesh), of_valid(distance), task);
       if (!d) return fail(d.error());
       cut.distance = *d;
       error = d->trusted_max();

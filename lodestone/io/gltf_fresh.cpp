@@ -13,10 +13,10 @@ namespace lodestone::io {
 
 namespace {
 
-Json fresh_mesh(const Mesh& mesh) {
+Json fresh_mesh(const Mesh& mesh, std::size_t materials) {
   Json out = Json::object();
   if (!mesh.name.empty()) out["name"] = mesh.name;
-  out["primitives"] = fresh_primitives(mesh);
+  out["primitives"] = fresh_primitives(mesh, materials);
   return out;
 }
 
@@ -62,11 +62,12 @@ void place_fresh_node(Json& node, const Instance& instance, const Mesh& mesh) {
   }
 }
 
-Json fresh_primitives(const Mesh& mesh) {
+Json fresh_primitives(const Mesh& mesh, std::size_t materials) {
   Json primitives = Json::array();
   for (std::size_t g = 0; g < std::max<std::size_t>(1, mesh.groups.size()); ++g) {
     Json primitive = Json::object();
-    if (g < mesh.groups.size() && mesh.groups[g].material != kNone) primitive["material"] = mesh.groups[g].material;
+    const std::uint32_t material = g < mesh.groups.size() ? mesh.groups[g].material : kNone;
+    if (material < materials) primitive["material"] = material;
     if (g < mesh.groups.size() && !mesh.groups[g].name.empty()) primitive["extras"] = {{"name", mesh.groups[g].name}};
     primitives.push_back(std::move(primitive));
   }
@@ -85,7 +86,7 @@ Json make_fresh_document(const Model& model) {
   if (!transform.is_identity()) add_root(transform, json, roots);
   json["scenes"] = Json::array({{{"nodes", std::move(roots)}}});
   json["meshes"] = Json::array();
-  for (const Mesh& mesh : model.meshes) json["meshes"].push_back(fresh_mesh(mesh));
+  for (const Mesh& mesh : model.meshes) json["meshes"].push_back(fresh_mesh(mesh, model.materials.size()));
   return json;
 }
 

@@ -1,6 +1,7 @@
 // A glTF document for a model that came from another format.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -8,8 +9,9 @@
 
 namespace lodestone::io {
 
-/// The primitives of a mesh, one a group, without geometry.
-Json fresh_primitives(const Mesh& mesh);
+/// The primitives of a mesh, one a group, without geometry. Groups of a model without materials may name some: those at
+/// `materials` and above are left out.
+Json fresh_primitives(const Mesh& mesh, std::size_t materials);
 
 /// Scene, a node an instance (its index is the instance's), and meshes whose primitives still lack geometry (one a face
 /// group, so that primitive g is group g).

@@ -15,6 +15,7 @@
 
 #include "lodestone/base/file.h"
 #include "lodestone/base/units.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/io/draco_detail.h"
 #include "lodestone/io/gltf_document.h"
 #include "lodestone/io/gltf_fresh_detail.h"
@@ -183,7 +184,8 @@ Json pack_primitives(Writer& w, std::size_t level, const Mesh& mesh, std::size_t
   Json out = Json::array();
   std::size_t group = 0;
   // Without a document each level says by itself which materials it has: one made anew may have others.
-  const Json own = w.document == nullptr ? fresh_primitives(mesh) : Json::array();
+  const Json own =
+      w.document == nullptr ? fresh_primitives(mesh, array_member(w.json, "materials").size()) : Json::array();
   for (const Json& source : w.document == nullptr ? own : array_member(w.source_meshes[index], "primitives")) {
     if (!is_triangle_primitive(source)) {
       out.push_back(source);
@@ -418,11 +420,13 @@ Result<WriteReport> guarded_write(const Model& original, std::span<const Level> 
 
 Result<WriteReport> write_gltf(const Ladder& ladder, const std::filesystem::path& path, const WriteOptions& options,
                                Task task) {
+  if (const Result<void> ok = validate(ladder, task); !ok) return fail(ok.error());
   return guarded_write(ladder.original, ladder.levels, path, options, task);
 }
 
 Result<WriteReport> write_gltf(const Model& model, const std::filesystem::path& path, const WriteOptions& options,
                                Task task) {
+  if (const Result<void> ok = validate(model, task); !ok) return fail(ok.error());
   const Level alone;
   return guarded_write(model, std::span(&alone, 1), path, options, task);
 }

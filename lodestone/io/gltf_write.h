@@ -23,12 +23,13 @@ namespace lodestone::io {
 /// quantization; primitives with morph targets stay plain under Draco, with a warning), and positions of a quantized
 /// file are stored as its integers only where these hold them exactly, else as floats. Other attributes keep the
 /// source's component type. Extensions of a primitive that describe its old geometry stay with level 0 only.
-/// Errors: cannot_write (also: a GLB above 4 GiB), bad_argument (levels that don't fit the original), unsupported
-/// (compression not built in), bad_format (the original's JSON has members of wrong types), out_of_memory, cancelled.
+/// Errors: cannot_write (also: a GLB above 4 GiB), bad_argument (levels that don't fit the original; those of
+/// validate()), unsupported (compression not built in), bad_format (the original's JSON has members of wrong types),
+/// out_of_memory, cancelled.
 Result<WriteReport> write_gltf(const Ladder& ladder, const std::filesystem::path& path,
                                const WriteOptions& options = {}, Task task = {});
 
-/// Writes one model, without levels.
+/// Writes one model, without levels. Errors: as above.
 Result<WriteReport> write_gltf(const Model& model, const std::filesystem::path& path, const WriteOptions& options = {},
                                Task task = {});
 

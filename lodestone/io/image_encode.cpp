@@ -6,10 +6,20 @@
 
 #include "lodestone/base/file.h"
 #include "lodestone/base/text.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/io/image_codecs_detail.h"
 #include "lodestone/io/text_reader_detail.h"
 
 namespace lodestone::io {
+
+namespace {
+
+Result<void> check(const Pixels& pixels) {
+  if (pixels.width == 0 || pixels.height == 0) return fail(ErrorCode::bad_argument, "the picture has no pixels");
+  return validate(pixels);
+}
+
+}  // namespace
 
 bool has_alpha(const Pixels& pixels) {
   for (std::size_t i = 3; i < pixels.rgba.size(); i += 4) {
@@ -37,7 +47,7 @@ Result<std::uint64_t> write_picture(const Pixels& pixels, const std::filesystem:
     return fail(ErrorCode::bad_argument, fmt::format("'{}' is no format of pictures that we write", extension),
                 path.string(), "end it in .png or .webp");
   }
-  if (pixels.width == 0 || pixels.height == 0) return fail(ErrorCode::bad_argument, "the picture has no pixels");
+  if (const Result<void> ok = check(pixels); !ok) return fail(ok.error());
   const Result<std::string> encoded =
       extension == ".png" ? encode_png(pixels, path.string()) : encode_webp(pixels, path.string());
   if (!encoded) return fail(encoded.error());
@@ -50,7 +60,7 @@ Result<std::uint64_t> write_picture(const Pixels& pixels, const std::filesystem:
 }
 
 Result<std::shared_ptr<const Image>> png_image(const Pixels& pixels, std::string name) {
-  if (pixels.width == 0 || pixels.height == 0) return fail(ErrorCode::bad_argument, "the picture has no pixels");
+  if (const Result<void> ok = check(pixels); !ok) return fail(ok.error());
   const Result<std::string> encoded = encode_png(pixels, name);
   if (!encoded) return fail(encoded.error());
   auto image = std::make_shared<Image>();

@@ -282,7 +282,7 @@ Result<void> write_materials(const ObjNames& names, const std::filesystem::path&
 }  // namespace
 
 Result<WriteReport> write_obj(const Model& model, const std::filesystem::path& path, Task task) {
-  if (const Result<void> ok = check_drawn(model, path); !ok) return fail(ok.error());
+  if (const Result<void> ok = check_drawn(model, path, task); !ok) return fail(ok.error());
   std::vector<std::string> warnings;
   const Mesh mesh = flatten_to_mesh(model, warnings);
   warn_of_left_out(mesh, warnings);

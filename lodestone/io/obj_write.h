@@ -15,7 +15,8 @@ namespace lodestone::io {
 /// colours behind the coordinates. Where only some groups have a name or a material, the others are in a group
 /// "default" with a white material "none" (with '_' appended where these are taken). Numbers in the shortest form that
 /// reads back the same. All files appear together or none. Warns of attributes that OBJ has no place for, of colours'
-/// alpha, and of vertices whose wedges differ in colour. Errors: empty (nothing drawn), cannot_write, cancelled.
+/// alpha, and of vertices whose wedges differ in colour. Errors: bad_argument (those of validate()), empty (nothing
+/// drawn), cannot_write, cancelled.
 Result<WriteReport> write_obj(const Model& model, const std::filesystem::path& path, Task task = {});
 
 }  // namespace lodestone::io

@@ -9,7 +9,7 @@
 namespace lodestone::io {
 
 Result<WriteReport> write_off(const Model& model, const std::filesystem::path& path, Task task) {
-  if (const Result<void> ok = check_drawn(model, path); !ok) return fail(ok.error());
+  if (const Result<void> ok = check_drawn(model, path, task); !ok) return fail(ok.error());
   std::vector<std::string> warnings;
   const Mesh mesh = flatten_to_mesh(model, warnings);
   warn_of_losses(mesh, "OFF", warnings);

@@ -11,7 +11,7 @@
 namespace lodestone::io {
 
 /// Writes the whole scene as OFF: positions and triangles only. Numbers in the shortest form that reads back the same.
-/// Errors: empty (nothing drawn), cannot_write, cancelled.
+/// Errors: bad_argument (those of validate()), empty (nothing drawn), cannot_write, cancelled.
 Result<WriteReport> write_off(const Model& model, const std::filesystem::path& path, Task task = {});
 
 }  // namespace lodestone::io

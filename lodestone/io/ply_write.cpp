@@ -216,7 +216,7 @@ void write_faces(const Mesh& mesh, OutputFile& file, const Task& task) {
 }  // namespace
 
 Result<WriteReport> write_ply(const Model& model, const std::filesystem::path& path, Task task) {
-  if (const Result<void> ok = check_drawn(model, path); !ok) return fail(ok.error());
+  if (const Result<void> ok = check_drawn(model, path, task); !ok) return fail(ok.error());
   std::vector<std::string> warnings;
   const Mesh mesh = flatten_to_mesh(model, warnings);
   const std::optional<TextureFile> texture = find_texture(model, mesh, path, warnings);

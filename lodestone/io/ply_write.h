@@ -14,7 +14,7 @@ namespace lodestone::io {
 /// attributes under the names and types that a PLY had, others under the usual ones (nx ny nz, s t, red green blue).
 /// Colours keep their type. Where the drawn materials have one texture and the mesh has UVs, it is named by `comment
 /// TextureFile` and written beside the PLY; both files appear or none. Textures that are left out are told.
-/// Errors: empty (nothing drawn), cannot_write, cancelled.
+/// Errors: bad_argument (those of validate()), empty (nothing drawn), cannot_write, cancelled.
 Result<WriteReport> write_ply(const Model& model, const std::filesystem::path& path, Task task = {});
 
 }  // namespace lodestone::io

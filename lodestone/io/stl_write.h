@@ -11,7 +11,8 @@
 namespace lodestone::io {
 
 /// Writes the whole scene as binary STL: triangles with their geometric normals; attributes, names and materials are
-/// left out. Errors: empty (nothing drawn), cannot_write, unsupported (over 2^32 triangles), cancelled.
+/// left out. Errors: bad_argument (those of validate()), empty (nothing drawn), cannot_write, unsupported (over 2^32
+/// triangles), cancelled.
 Result<WriteReport> write_stl(const Model& model, const std::filesystem::path& path, Task task = {});
 
 }  // namespace lodestone::io

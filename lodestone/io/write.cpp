@@ -12,6 +12,7 @@
 
 #include "lodestone/base/file.h"
 #include "lodestone/base/text.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/io/gltf_write.h"
 #include "lodestone/io/obj_write.h"
 #include "lodestone/io/off_write.h"
@@ -235,7 +236,10 @@ Result<WriteReport> write_model(const Model& model, const fs::path& path, const 
 Result<WriteReport> write_ladder(const Ladder& ladder, const fs::path& path, const WriteOptions& options, Task task) {
   if (const Result<void> ok = check_ladder_name(path, options.compression); !ok) return fail(ok.error());
   if (const Result<void> ok = check_replaced(ladder.original, path, ladder.levels.size()); !ok) return fail(ok.error());
-  if (is_pattern(path)) return write_level_files(ladder, path, options, task);
+  if (is_pattern(path)) {
+    if (const Result<void> ok = validate(ladder, task); !ok) return fail(ok.error());
+    return write_level_files(ladder, path, options, task);
+  }
   if (!has_side_files(ladder.original, extension_of(path))) return write_gltf(ladder, path, options, task);
   return write_staged(
       path, [&](const fs::path& hidden) { return write_gltf(ladder, hidden / path.filename(), options, task); });

@@ -36,12 +36,14 @@ struct WriteReport {
 /// .gltf (+ .bin). All or nothing: see base/file.h. Instances are flattened where the format has none. Older files of
 /// these names are replaced, but see check_replaced(); a texture beside the model never replaces a file with other
 /// bytes.
-/// Errors: cannot_write, unsupported, bad_argument (compression that the format has not), cancelled.
+/// Errors: cannot_write, unsupported, bad_argument (compression that the format has not; those of validate()),
+/// cancelled.
 Result<WriteReport> write_model(const Model& model, const std::filesystem::path& path, const WriteOptions& options = {},
                                 Task task = {});
 
 /// Writes a ladder. "name.glb" or "name.gltf": all levels in one file with MSFT_lod, the coarsest level first in the
 /// binary chunk. "name_LOD{level}.ext": a file a level. Anything else is bad_argument with both spellings named.
+/// Errors: as above.
 Result<WriteReport> write_ladder(const Ladder& ladder, const std::filesystem::path& path,
                                  const WriteOptions& options = {}, Task task = {});
 

@@ -10,8 +10,8 @@
 
 namespace lodestone::io {
 
-/// Errors: empty if the model draws nothing.
-Result<void> check_drawn(const Model& model, const std::filesystem::path& path);
+/// Errors: bad_argument (those of validate()), empty if the model draws nothing, cancelled.
+Result<void> check_drawn(const Model& model, const std::filesystem::path& path, const Task& task);
 
 /// A report of one file.
 WriteReport single_file_report(const std::filesystem::path& path, std::uint64_t bytes,

@@ -79,8 +79,8 @@ struct Attributes {
 
 /// Compares A, the original, with B. Textures count where they are decoded (io::decode_base_colors); those that aren't
 /// count as white and are told. Deterministic for (inputs, samples, seed), any thread count. O((samples + triangles)
-/// log triangles), some 60 bytes a sample. Errors: empty, bad_argument (uv_set is not there; says which are),
-/// cancelled.
+/// log triangles), some 60 bytes a sample. Errors: empty, bad_argument (uv_set is not there; says which are; those
+/// of validate()), cancelled.
 Result<Attributes> attribute_deviation(const Model& a, const Model& b, const AttributeOptions& options = {},
                                        Task task = {});
 

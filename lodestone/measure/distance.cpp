@@ -30,7 +30,7 @@ Result<Reference> Reference::create(const Model& original, Task task) {
 double Reference::diagonal() const { return data_->surface.bounds.diagonal(); }
 
 Result<Distance> Reference::distance_to(const Model& level, const DistanceOptions& options, Task task) const {
-  const Result<spatial::Surface> surface = spatial::flatten(level, task);
+  const Result<spatial::Surface> surface = spatial::flatten(level, options.input, task);
   if (!surface) return fail(surface.error());
   const spatial::Bvh tree(*surface, task);
   Distance out;

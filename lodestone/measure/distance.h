@@ -7,6 +7,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/core/input.h"
 #include "lodestone/core/model.h"
 
 namespace lodestone::measure {
@@ -20,6 +21,7 @@ struct DistanceOptions {
   double least_tolerance = 0;  ///< or this far, model units; 0: 1e-6 of the larger diagonal
   /// Closest points that bounding may look up a direction; 0: one a sample.
   std::uint64_t queries = 0;
+  Input input = Input::unchecked;  ///< of the level
 };
 
 /// From one surface to the other. Mean, rms and normal angle are over the samples only, the maximum over vertices too.
@@ -59,14 +61,15 @@ struct Distance {
 /// An original prepared once, so that many levels can be measured against it.
 class Reference {
  public:
-  /// Flattens the default scene (world space, all instances, bind pose) and builds its tree. Errors: empty, cancelled.
+  /// Flattens the default scene (world space, all instances, bind pose) and builds its tree. Errors: bad_argument
+  /// (those of validate()), empty, cancelled.
   static Result<Reference> create(const Model& original, Task task = {});
   Reference(Reference&&) noexcept;
   Reference& operator=(Reference&&) noexcept;
   ~Reference();
 
   /// Distance between the original and a level. Deterministic for (inputs, samples, seed), any thread count.
-  /// O((samples + vertices) log triangles). Errors: empty, cancelled.
+  /// O((samples + vertices) log triangles). Errors: bad_argument (those of validate()), empty, cancelled.
   Result<Distance> distance_to(const Model& level, const DistanceOptions& options = {}, Task task = {}) const;
 
   double diagonal() const;
@@ -77,7 +80,7 @@ class Reference {
   std::unique_ptr<Data> data_;
 };
 
-/// Reference::create(a) and distance_to(b) in one.
+/// Reference::create(a) and distance_to(b) in one. Errors: as theirs.
 Result<Distance> distance(const Model& a, const Model& b, const DistanceOptions& options = {}, Task task = {});
 
 }  // namespace lodestone::measure

@@ -23,7 +23,7 @@ struct Hausdorff {
 /// pose), as intervals no wider than `tolerance` (model units), by branch and bound over all triangles; bounds hold up
 /// to rounding in double precision. Same figures for any thread count. O((vertices + pieces) log triangles); surfaces
 /// that lie close to each other need few pieces, those whose triangles cross or double need about area / tolerance^2.
-/// Errors: bad_argument (tolerance not above 1e-9 of the larger diagonal), empty, cancelled.
+/// Errors: bad_argument (tolerance not above 1e-9 of the larger diagonal; those of validate()), empty, cancelled.
 Result<Hausdorff> hausdorff(const Model& a, const Model& b, double tolerance, Task task = {});
 
 }  // namespace lodestone::measure

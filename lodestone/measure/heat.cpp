@@ -195,9 +195,9 @@ Mesh mesh_of(Field field, Vec3d offset, double range, bool linear_colors) {
 }  // namespace
 
 Result<Heat> heat_map(const Model& a, const Model& b, const HeatOptions& options, Task task) {
-  Result<spatial::Surface> from = spatial::flatten(a, task.part(0.2));
+  Result<spatial::Surface> from = spatial::flatten(a, options.input, task.part(0.2));
   if (!from) return fail(from.error());
-  const Result<spatial::Surface> other = spatial::flatten(b, task.part(0.1));
+  const Result<spatial::Surface> other = spatial::flatten(b, options.input, task.part(0.1));
   if (!other) return fail(other.error());
   const spatial::Bvh to(*other, task.part(0.1));
 

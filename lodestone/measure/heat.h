@@ -5,6 +5,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/core/input.h"
 #include "lodestone/core/model.h"
 
 namespace lodestone::measure {
@@ -17,6 +18,7 @@ struct HeatOptions {
   double longest_side = 0.03;              ///< of A's diagonal: longer ones are split whatever their middles say
   std::size_t most_triangles = 2'000'000;  ///< splitting ends before there are more, unless A has more itself
   bool linear_colors = true;               ///< COLOR_0 as light, as glTF has it; false: as sRGB, as PLY has it
+  Input input = Input::unchecked;          ///< of both models
 };
 
 struct Heat {
@@ -31,7 +33,7 @@ struct Heat {
 };
 
 /// How far A's surface is from B's, place by place (one direction: swap the models for the other). Same bytes for any
-/// thread count. O(n log n). Errors: empty, cancelled.
+/// thread count. O(n log n). Errors: bad_argument (those of validate()), empty, cancelled.
 Result<Heat> heat_map(const Model& a, const Model& b, const HeatOptions& options = {}, Task task = {});
 
 }  // namespace lodestone::measure

@@ -63,6 +63,12 @@ Camera camera_at(const Box3d& bounds, Vec3d direction) {
   return camera;
 }
 
+render::SceneOptions scene_options(const ImageOptions& options) {
+  render::SceneOptions out;
+  out.input = options.input;
+  return out;
+}
+
 struct Picture {
   std::vector<std::uint8_t> coverage;  // samples of each pixel, of kSamples
   Pixels shading, color;               // color is empty where not asked for
@@ -176,7 +182,7 @@ Result<ImageReference> ImageReference::create(const Model& original, const Image
   if (options.size_px < 16 || options.size_px > 4096) {
     return fail(ErrorCode::bad_argument, "that is no size for pictures to compare", {}, "use 16 to 4096 pixels");
   }
-  const Result<render::Scene> scene = render::Scene::create(original, {}, task.part(0.1));
+  const Result<render::Scene> scene = render::Scene::create(original, scene_options(options), task.part(0.1));
   if (!scene) return fail(scene.error());
   auto data = std::make_unique<Data>();
   data->options = options;
@@ -193,7 +199,7 @@ Result<ImageReference> ImageReference::create(const Model& original, const Image
 
 Result<ImageDeviation> ImageReference::deviation_of(const Model& level, Task task) const {
   const std::uint32_t size = data_->options.size_px;
-  const Result<render::Scene> scene = render::Scene::create(level, {}, task.part(0.1));
+  const Result<render::Scene> scene = render::Scene::create(level, scene_options(data_->options), task.part(0.1));
   if (!scene && scene.error().code != ErrorCode::empty) return fail(scene.error());
   ImageDeviation out;
   out.views = static_cast<int>(data_->cameras.size());

@@ -9,6 +9,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/core/input.h"
 #include "lodestone/core/model.h"
 
 namespace lodestone::measure {
@@ -18,6 +19,7 @@ struct ImageOptions {
   int views = 20;
   /// Pictures are squares of this many pixels; the bounding sphere of the original's box just fits (no perspective).
   std::uint32_t size_px = 512;
+  Input input = Input::unchecked;  ///< of the original, and of all levels
 };
 
 /// Over all views. Shading is grey, lit, with the models' normals; colours are with textures and vertex colours.
@@ -44,13 +46,15 @@ struct ImageDeviation {
 /// Pictures of an original, to compare many levels with. Textures must be decoded before (io::decode_base_colors()).
 class ImageReference {
  public:
-  /// Errors: bad_argument (number of views, size), empty, cancelled. About 7 bytes a pixel and view.
+  /// Errors: bad_argument (number of views, size; those of validate()), empty, cancelled. About 7 bytes a pixel and
+  /// view.
   static Result<ImageReference> create(const Model& original, const ImageOptions& options = {}, Task task = {});
   ImageReference(ImageReference&&) noexcept;
   ImageReference& operator=(ImageReference&&) noexcept;
   ~ImageReference();
 
-  /// A level without triangles differs wholly. Same figures for any thread count. Errors: cancelled.
+  /// A level without triangles differs wholly. Same figures for any thread count. Errors: bad_argument (those
+  /// of validate()), cancelled.
   Result<ImageDeviation> deviation_of(const Model& level, Task task = {}) const;
 
  private:

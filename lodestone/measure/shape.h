@@ -19,7 +19,8 @@ struct Shape {
   std::optional<std::int64_t> genus;
 };
 
-/// Of the default scene as drawn: all instances, bind pose. O(n log n). Errors: cancelled.
+/// Of the default scene as drawn: all instances, bind pose. O(n log n). Errors: bad_argument (those of validate()),
+/// cancelled.
 Result<Shape> shape_of(const Model& model, const Task& task = {});
 
 }  // namespace lodestone::measure

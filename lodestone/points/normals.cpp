@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "lodestone/base/parallel.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/math/symmetric.h"
 #include "lodestone/points/orient_detail.h"
 #include "lodestone/spatial/kd_tree.h"
@@ -21,7 +22,7 @@ using spatial::Neighbor;
 
 constexpr std::uint32_t kMostNeighbors = 64;
 
-Result<void> check(const PointCloud& cloud, const NormalOptions& options) {
+Result<void> check(const PointCloud& cloud, const NormalOptions& options, const Task& task) {
   if (cloud.positions.empty()) return fail(ErrorCode::empty, "there are no points", "normals");
   if (options.neighbors < 3 || options.neighbors > kMostNeighbors) {
     return fail(ErrorCode::bad_argument, fmt::format("{} neighbours can't be used", options.neighbors), "normals",
@@ -31,10 +32,7 @@ Result<void> check(const PointCloud& cloud, const NormalOptions& options) {
     return fail(ErrorCode::bad_argument, fmt::format("{} neighbours can't be used", options.graph_neighbors), "normals",
                 "use 1 to 64");
   }
-  if (!std::all_of(cloud.positions.begin(), cloud.positions.end(), [](Vec3f p) { return is_finite(p); })) {
-    return fail(ErrorCode::bad_argument, "some positions are not finite", "normals", "leave these points out");
-  }
-  return {};
+  return validate(cloud, task);
 }
 
 // The axis along which a point and its neighbours spread least.
@@ -95,7 +93,7 @@ Result<Normals> oriented(const PointCloud& cloud, const KdTree& tree, const deta
 }  // namespace
 
 Result<Normals> estimate_normals(const PointCloud& cloud, const NormalOptions& options, const Task& task) {
-  if (const Result<void> ok = check(cloud, options); !ok) return fail(ok.error());
+  if (const Result<void> ok = check(cloud, options, task); !ok) return fail(ok.error());
   const KdTree tree(cloud.positions, task.part(0.2));
   GraphRows rows(tree, options.graph_neighbors);
   Normals out;
@@ -111,7 +109,7 @@ Result<Normals> estimate_normals(const PointCloud& cloud, const NormalOptions& o
 }
 
 Result<Normals> orient_normals(const PointCloud& cloud, const NormalOptions& options, const Task& task) {
-  if (const Result<void> ok = check(cloud, options); !ok) return fail(ok.error());
+  if (const Result<void> ok = check(cloud, options, task); !ok) return fail(ok.error());
   if (cloud.normals.size() != cloud.size()) {
     return fail(ErrorCode::bad_argument, fmt::format("{} points have {} normals", cloud.size(), cloud.normals.size()),
                 "normals", "estimate them");

@@ -24,7 +24,7 @@ struct Normals {
 
 /// The direction in which the nearest points spread least (principal components), oriented as by orient_normals().
 /// O(n log n), memory about 200 bytes a point. Same bytes for any thread count. Errors: empty (no point), bad_argument
-/// (numbers of neighbours out of range, positions that are not finite), cancelled.
+/// (numbers of neighbours out of range; those of validate()), cancelled.
 Result<Normals> estimate_normals(const PointCloud& cloud, const NormalOptions& options = {}, const Task& task = {});
 
 /// Turns some of the cloud's normals around so that neighbours agree and the outermost look outward: along a minimum

@@ -55,7 +55,7 @@ void make_looks(const Model& model, SceneData& data) {
 }  // namespace
 
 Result<Scene> Scene::create(const Model& model, const SceneOptions& options, Task task) {
-  Result<spatial::Surface> surface = spatial::flatten(model, task.part(0.4));
+  Result<spatial::Surface> surface = spatial::flatten(model, options.input, task.part(0.4));
   if (!surface) return fail(surface.error());
   auto data = std::make_shared<SceneData>();
   data->surface = std::move(*surface);

@@ -9,6 +9,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/core/input.h"
 #include "lodestone/core/model.h"
 #include "lodestone/math/box.h"
 #include "lodestone/math/camera.h"
@@ -25,6 +26,7 @@ struct SceneOptions {
   std::vector<std::vector<float>> values;
   /// Without `values`: the attribute stream that holds them ("_ERROR"); of several components the length is taken.
   std::string attribute;
+  Input input = Input::unchecked;  ///< of the model
 };
 
 /// A model's default scene in world space: all instances, bind pose, mirrored ones with their faces outward, triangles
@@ -35,7 +37,7 @@ class Scene {
  public:
   /// Time O(n log n), memory 40 bytes a triangle and 24 a vertex, with textures, colours and values up to 100 a
   /// triangle. Errors: empty (no triangle drawn), bad_argument (values that don't fit the meshes, an attribute that
-  /// none of them has), unsupported (more than 1.4 billion triangles), cancelled.
+  /// none of them has; those of validate()), unsupported (more than 1.4 billion triangles), cancelled.
   static Result<Scene> create(const Model& model, const SceneOptions& options = {}, Task task = {});
 
   /// Of all finite positions drawn, world space.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "lodestone/core/validate.h"
+
 namespace lodestone::report {
 
 namespace {
@@ -27,6 +29,7 @@ std::uint64_t seam_vertices(const Model& model) {
 
 Result<ReportData> ladder_report(const chain::LadderResult& result, const PictureOptions& pictures, Task task) {
   const Ladder& ladder = result.ladder;
+  if (const Result<void> ok = validate(ladder, task); !ok) return fail(ok.error());
   ReportData data;
   data.diagonal = ladder.levels.front().error.diagonal;
   data.seam_vertices = seam_vertices(ladder.original);

@@ -1,5 +1,6 @@
 #include "lodestone/report/level_pictures.h"
 
+#include "lodestone/core/validate.h"
 #include "lodestone/io/image_encode.h"
 #include "lodestone/measure/heat.h"
 #include "lodestone/render/render.h"
@@ -19,12 +20,14 @@ Result<std::string> draw_heat(const Model& original, const Model& level, const C
                               render::RenderOptions options, double& range, const Task& task) {
   measure::HeatOptions coarse;
   coarse.tolerance = 0.05;
+  coarse.input = Input::valid;
   coarse.shortest_side = 0.005;  // three pixels or so
   const Result<measure::Heat> heat = measure::heat_map(original, level, coarse, task.part(0.7));
   if (!heat) return fail(heat.error());
   range = heat->range;
   render::SceneOptions values;
   values.attribute = "_ERROR";
+  values.input = Input::valid;
   const Result<render::Scene> scene = render::Scene::create(heat->model, values, task.part(0.2));
   if (!scene) return fail(scene.error());
   options.shading = render::Shading::heat;
@@ -36,15 +39,18 @@ Result<std::string> draw_heat(const Model& original, const Model& level, const C
 }  // namespace
 
 Result<std::vector<LevelPictures>> draw_levels(const Ladder& ladder, const PictureOptions& options, Task task) {
+  if (const Result<void> ok = validate(ladder, task); !ok) return fail(ok.error());
   std::vector<LevelPictures> out(ladder.levels.size());
   render::RenderOptions look;
   look.width = options.width;
   look.height = options.height;
   const double share = 1.0 / static_cast<double>(ladder.levels.size());
+  render::SceneOptions of_valid;
+  of_valid.input = Input::valid;
   Camera camera;
   for (std::size_t i = 0; i < ladder.levels.size(); ++i) {
     const Task part = task.part(0.4 * share);
-    const Result<render::Scene> scene = render::Scene::create(ladder.model(i), {}, part.part(0.5));
+    const Result<render::Scene> scene = render::Scene::create(ladder.model(i), of_valid, part.part(0.5));
     if (!scene) return fail(scene.error());
     if (i == 0) camera = scene->framed(options.angles, static_cast<double>(look.width) / look.height, {}, options.up);
     look.shading = render::default_shading(*scene);

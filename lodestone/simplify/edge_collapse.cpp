@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodestone/core/validate.h"
 #include "lodestone/simplify/collapse_sweep_detail.h"
 
 namespace lodestone::simplify {
@@ -54,6 +55,10 @@ Result<void> check(const Mesh& mesh, const EdgeCollapseOptions& options) {
   const bool usable =
       std::all_of(options.weights.begin(), options.weights.end(), [](float w) { return w >= 0 && std::isfinite(w); });
   if (!usable) return bad("a weight is negative or not finite", "use 0 or more; lock what must stay");
+  const auto& metric = options.metric.m;
+  if (!std::all_of(metric.begin(), metric.end(), [](double m) { return std::isfinite(m); })) {
+    return bad("the metric is not finite", "give a transform, or the identity");
+  }
   return {};
 }
 
@@ -180,6 +185,9 @@ void release_mesh(State& state) {
 
 Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOptions& options, Task task) {
   if (const Result<void> ok = check(mesh, options); !ok) return fail(ok.error());
+  if (options.input != Input::valid) {
+    if (const Result<void> ok = validate(mesh, task); !ok) return fail(ok.error());
+  }
   const Task passes = task.part(0.9);
   Result<State> state = detail::make_state(mesh, options, passes);
   if (!state) return fail(state.error());
@@ -192,7 +200,9 @@ Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOp
   const Cut cut = find_cut(log, options);
   result.stop = cut.stop;
   if (cut.count > 0) result.estimated_error = log.collapses[cut.count - 1].error;
-  Result<ReplayResult> replayed = replay(mesh, log, cut.count, task);
+  ReplayOptions replaying;
+  replaying.input = Input::valid;
+  Result<ReplayResult> replayed = replay(mesh, log, cut.count, replaying, task);
   if (!replayed) return fail(replayed.error());
   result.mesh = std::move(replayed->mesh);
   result.origin = std::move(replayed->origin);

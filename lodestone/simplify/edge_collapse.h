@@ -12,6 +12,7 @@
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
 #include "lodestone/core/collapse_log.h"
+#include "lodestone/core/input.h"
 #include "lodestone/core/mesh.h"
 #include "lodestone/math/mat.h"
 
@@ -43,7 +44,8 @@ struct EdgeCollapseOptions {
   /// was none (threshold beta of paper 001, section 3.2); 1 = any fold is allowed. 10 degrees. Once no other collapse
   /// is left anywhere, angles down to 0.1 degrees are allowed: thin bars end in blades.
   float fold_cosine = 0.98481F;
-  bool record_log = false;  ///< fill EdgeCollapseResult::log
+  bool record_log = false;         ///< fill EdgeCollapseResult::log
+  Input input = Input::unchecked;  ///< of the mesh
 };
 
 enum class StopReason { reached_target, error_limit, no_legal_collapse };
@@ -72,7 +74,8 @@ struct EdgeCollapseResult {
 /// Collapses edges until a target holds. Lindstrom & Turk 1998 (memoryless, volume-preserving placement) in passes over
 /// flat arrays; see docs/papers/edge-collapse.md. Closed manifold input gives closed manifold output. Same bytes for
 /// any number of threads. Time O(n log n). Positions and errors in model units. Errors: bad_argument (neither target
-/// set, wrong size of `locked` or `weights`, a weight below 0 or not finite), cancelled.
+/// set, wrong size of `locked` or `weights`, a weight below 0 or not finite, a metric
+/// that is not finite; those of validate()), cancelled.
 Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOptions& options = {}, Task task = {});
 
 }  // namespace lodestone::simplify

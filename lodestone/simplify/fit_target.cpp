@@ -13,7 +13,7 @@ spatial::Surface surface_of(const Mesh& mesh, const Task& task) {
   bare.offset = mesh.offset;
   bare.triangles.reserve(mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) bare.triangles.push_back(mesh.vertices_of(t));
-  Result<spatial::Surface> surface = spatial::flatten(make_model(std::move(bare)), task);
+  Result<spatial::Surface> surface = spatial::flatten(make_model(std::move(bare)), Input::valid, task);
   return surface ? std::move(*surface) : spatial::Surface();
 }
 

@@ -4,6 +4,8 @@
 // Steps    parts -> tree of parts -> lower bounds -> { the cheapest is looked at anew, and goes or waits }
 #include "lodestone/simplify/thin_parts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -12,6 +14,7 @@
 #include <tuple>
 
 #include "lodestone/base/parallel.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/simplify/part_shape_detail.h"
 #include "lodestone/spatial/part_tree.h"
 
@@ -255,15 +258,25 @@ class Greedy {
 
 Result<void> check(const Mesh& mesh, const ThinPartsOptions& options) {
   const auto wrong = [&](std::size_t size) { return size != 0 && size != mesh.vertex_count(); };
-  if (!wrong(options.locked.size()) && !wrong(options.weights.size())) return {};
-  return fail(ErrorCode::bad_argument, "a list of vertices has another length than the mesh's vertices", "thin parts",
-              "give one entry a vertex");
+  if (wrong(options.locked.size()) || wrong(options.weights.size())) {
+    return fail(ErrorCode::bad_argument, "a list of vertices has another length than the mesh's vertices", "thin parts",
+                "give one entry a vertex");
+  }
+  for (const std::uint32_t t : options.left_out) {
+    if (t < mesh.triangles.size()) continue;
+    return fail(ErrorCode::bad_argument, fmt::format("triangle {} of {} is to be left out", t, mesh.triangles.size()),
+                "thin parts");
+  }
+  return {};
 }
 
 }  // namespace
 
 Result<ThinParts> thin_parts(const Mesh& mesh, const ThinPartsOptions& options, Task task) {
   if (const Result<void> ok = check(mesh, options); !ok) return fail(ok.error());
+  if (options.input != Input::valid) {
+    if (const Result<void> ok = validate(mesh, task); !ok) return fail(ok.error());
+  }
   ThinParts out;
   out.parts = parts_of(mesh);
   Greedy(mesh, options, out, task).run();

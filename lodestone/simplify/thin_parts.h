@@ -6,6 +6,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/core/input.h"
 #include "lodestone/core/mesh.h"
 #include "lodestone/core/parts.h"
 #include "lodestone/math/mat.h"
@@ -19,6 +20,7 @@ struct ThinPartsOptions {
                                         ///< the root of its largest weight says, but never less than once
   std::vector<std::uint32_t> left_out;  ///< triangles that take no part (CollapseLog::dropped), ascending
   Mat4d metric;                         ///< mesh space to where errors are judged; see EdgeCollapseOptions
+  Input input = Input::unchecked;       ///< of the mesh
 };
 
 /// A part vanishes; `absorber` takes over its area.
@@ -37,7 +39,8 @@ struct ThinParts {
 /// The order in which the parts of a mesh may vanish, greedily the one that errs least. A part's error is how far its
 /// vertices are from the parts that remain, plus the error of what it stands for: parts that took over others inherit
 /// theirs. One part always remains. Time O(n log n) for parts of bounded size, memory about 150 bytes a triangle.
-/// The same for any number of threads. Errors: bad_argument (sizes of `locked` or `weights`), cancelled.
+/// The same for any number of threads. Errors: bad_argument (sizes of `locked` or `weights`, a triangle
+/// `left_out` that is not there; those of validate()), cancelled.
 Result<ThinParts> thin_parts(const Mesh& mesh, const ThinPartsOptions& options = {}, Task task = {});
 
 }  // namespace lodestone::simplify

@@ -13,6 +13,7 @@
 #include "lodestone/base/parallel.h"
 #include "lodestone/core/adjacency.h"
 #include "lodestone/core/parts.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/spatial/part_tree.h"
 
@@ -281,6 +282,7 @@ Result<std::size_t> join_parts(Mesh& mesh, double tolerance, const std::vector<s
     return fail(ErrorCode::bad_argument, "the list of locked vertices has another length than the mesh's vertices",
                 "joining", "give one entry a vertex");
   }
+  if (const Result<void> ok = validate(mesh, task); !ok) return fail(ok.error());
   Sewn sewn(mesh);
   for (int round = 0; round < kMostRounds && !task.cancelled(); ++round) {
     if (Round(mesh, sewn, locked, task).run(tolerance) == 0) break;

@@ -67,6 +67,13 @@ Result<std::size_t> snap_positions(std::vector<Vec3f>& positions, double toleran
   if (!(tolerance > 0) || !std::isfinite(tolerance)) {
     return fail(ErrorCode::bad_argument, "the welding tolerance is not a length above 0", "welding");
   }
+  if (!fixed.empty() && fixed.size() != positions.size()) {
+    return fail(ErrorCode::bad_argument, "the list of fixed positions has another length than the positions", "welding",
+                "give one entry a position");
+  }
+  if (!std::all_of(positions.begin(), positions.end(), [](Vec3f p) { return is_finite(p); })) {
+    return fail(ErrorCode::bad_argument, "a position is not finite", "welding", "leave it out");
+  }
   Cells cells(positions, tolerance);
   std::size_t moved = 0;
   for (std::uint32_t v = 0; v < fixed.size(); ++v) {

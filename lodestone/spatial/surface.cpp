@@ -1,8 +1,13 @@
 #include "lodestone/spatial/surface.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "lodestone/base/parallel.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/spatial/hilbert.h"
 
 namespace lodestone::spatial {
@@ -74,7 +79,12 @@ void reorder(Surface& surface, const std::vector<Key>& keys) {
 
 }  // namespace
 
-Result<Surface> flatten(const Model& model, Task task) {
+Result<Surface> flatten(const Model& model, Task task) { return flatten(model, Input::unchecked, std::move(task)); }
+
+Result<Surface> flatten(const Model& model, Input input, Task task) {
+  if (input != Input::valid) {
+    if (const Result<void> ok = validate(model, task); !ok) return fail(ok.error());
+  }
   Surface surface;
   const std::size_t triangles = drawn_triangles(model);
   std::size_t vertices = 0;
@@ -94,6 +104,40 @@ Result<Surface> flatten(const Model& model, Task task) {
   if (task.cancelled()) return cancelled_error("measuring");
   reorder(surface, keys);
   return surface;
+}
+
+Result<void> validate(const Surface& surface, const Task& task) {
+  const std::size_t none = std::max(surface.positions.size(), surface.triangles.size());
+  const auto first_of = [&](std::size_t n, const auto& is_bad) {
+    const auto in_chunk = [&](std::size_t begin, std::size_t end) {
+      while (begin < end && !is_bad(begin)) ++begin;
+      return begin < end ? begin : none;
+    };
+    return parallel_reduce(n, kChunk, task, none, in_chunk, [](auto a, auto b) { return std::min(a, b); });
+  };
+  const std::size_t v = first_of(surface.positions.size(), [&](std::size_t i) {
+    const Vec3d p = surface.positions[i];
+    return !(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kMostCoordinate) || !is_finite(p);
+  });
+  if (v < none) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("position {} is not finite or farther than {:g} from the origin", v, kMostCoordinate),
+                "surface");
+  }
+  const std::size_t positions = surface.positions.size();
+  const std::size_t t = first_of(surface.triangles.size(), [&](std::size_t i) {
+    const Triangle& corners = surface.triangles[i];
+    return std::max({corners[0], corners[1], corners[2]}) >= positions;
+  });
+  if (t < none) {
+    const Triangle& corners = surface.triangles[t];
+    return fail(ErrorCode::bad_argument,
+                fmt::format("triangle {} names position {} of {}", t, std::max({corners[0], corners[1], corners[2]}),
+                            positions),
+                "surface");
+  }
+  if (task.cancelled()) return cancelled_error("validating");
+  return {};
 }
 
 }  // namespace lodestone::spatial

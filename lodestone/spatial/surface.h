@@ -7,6 +7,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/core/input.h"
 #include "lodestone/core/mesh.h"
 #include "lodestone/core/model.h"
 #include "lodestone/math/box.h"
@@ -30,7 +31,12 @@ struct Surface {
 
 /// Flattens the default scene: all instances, bind pose; a mirrored instance keeps its faces outward (its second
 /// and third corners change places). O(n log n).
-/// Errors: empty, cancelled.
+/// Errors: bad_argument (those of validate()), empty, unsupported (more triangles than can be numbered), cancelled.
 Result<Surface> flatten(const Model& model, Task task = {});
+Result<Surface> flatten(const Model& model, Input input, Task task = {});
+
+/// Triangles that name positions that are there, all finite and within kMostCoordinate. O(n). Errors: bad_argument,
+/// cancelled.
+Result<void> validate(const Surface& surface, const Task& task = {});
 
 }  // namespace lodestone::spatial

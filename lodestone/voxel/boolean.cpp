@@ -1,8 +1,12 @@
 #include "lodestone/voxel/boolean.h"
 
+#include "lodestone/core/validate.h"
+
 namespace lodestone::voxel {
 
 Result<void> combine(BitVolume& a, const BitVolume& b, BooleanOperation operation) {
+  if (const Result<void> ok = validate(a); !ok) return ok;
+  if (const Result<void> ok = validate(b); !ok) return ok;
   if (a.grid.size != b.grid.size || a.grid.origin != b.grid.origin || a.grid.spacing != b.grid.spacing) {
     return fail(ErrorCode::bad_argument, "the solids' voxels do not lie alike", {}, "voxelize both in one grid");
   }

@@ -8,7 +8,8 @@ namespace lodestone::voxel {
 
 enum class BooleanOperation { unite, intersect, subtract };
 
-/// a becomes a or b, a and b, or a without b. O(words). Errors: bad_argument (grids that differ).
+/// a becomes a or b, a and b, or a without b. O(words). Errors: bad_argument (grids that differ; those of
+/// validate()).
 Result<void> combine(BitVolume& a, const BitVolume& b, BooleanOperation operation);
 
 }  // namespace lodestone::voxel

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lodestone/base/parallel.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/voxel/cube_surface_detail.h"
 #include "lodestone/voxel/resample.h"
 
@@ -57,6 +58,7 @@ double edge_ratio(const BitVolume& solid, Vec3d from, Vec3d to, std::uint32_t st
 
 Result<Mesh> edge_ratio_surface(const BitVolume& solid, const std::array<std::uint32_t, 3>& samples,
                                 const EdgeRatioOptions& options, Task task) {
+  if (const Result<void> ok = validate(solid); !ok) return fail(ok.error());
   Lattice lattice;
   VoxelGrid grid = solid.grid;
   std::array<std::uint32_t, 3> steps{};

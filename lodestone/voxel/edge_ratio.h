@@ -27,7 +27,7 @@ struct EdgeRatioOptions {
 /// where VoxExt says so (paper 000, section 2.4), with vertices where a march along the edge finds the change
 /// (EdgeRatio, section 2.5). Each crossed edge is marched once, where the paper marches it for every cube beside it.
 /// Closed and manifold, as voxel::isosurface. O(samples + crossed edges · steps). Errors: bad_argument (no samples, or
-/// more than voxels; a threshold outside of (0, 1)), empty, unsupported, cancelled.
+/// more than voxels; a threshold outside of (0, 1); those of validate()), empty, unsupported, cancelled.
 Result<Mesh> edge_ratio_surface(const BitVolume& solid, const std::array<std::uint32_t, 3>& samples,
                                 const EdgeRatioOptions& options = {}, Task task = {});
 

@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "lodestone/base/parallel.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/voxel/cube_surface_detail.h"
 #include "lodestone/voxel/inside_rows_detail.h"
 #include "lodestone/voxel/isosurface_detail.h"
@@ -158,6 +159,7 @@ Result<detail::Contour> contour_of(const VolumeView<T>& volume, double iso, cons
     return fail(ErrorCode::bad_argument, fmt::format("{} values are no volume of {} x {} x {} voxels",
                                                      volume.values.size(), size[0], size[1], size[2]));
   }
+  if (const Result<void> ok = validate(volume); !ok) return fail(ok.error());
   InsideRows rows = inside_rows(volume, iso, task);
   Result<detail::CubeSurface> surface = detail::find_surface(rows, task);
   if (!surface) return fail(surface.error());

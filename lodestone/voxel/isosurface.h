@@ -25,8 +25,8 @@ struct IsosurfaceOptions {
 /// lie where the values, linear along an edge, reach `iso`, and are shared. Values that are not finite are outside.
 /// Model units, Mesh::offset is the middle of the grid. No attributes. Same bytes for any thread count.
 /// O(voxels + triangles), memory a bit a voxel and 12 bytes a row on top of the mesh. Errors: bad_argument (an iso that
-/// is not finite, fewer values than voxels), empty (no voxel inside), unsupported (more vertices than a mesh can name),
-/// cancelled.
+/// is not finite; another number of values than voxels; those of validate()), empty (no voxel inside), unsupported
+/// (more vertices than a mesh can name), cancelled.
 Result<Mesh> isosurface(const VolumeView<std::uint8_t>& volume, const IsosurfaceOptions& options = {}, Task task = {});
 Result<Mesh> isosurface(const VolumeView<std::int16_t>& volume, const IsosurfaceOptions& options = {}, Task task = {});
 Result<Mesh> isosurface(const VolumeView<std::uint16_t>& volume, const IsosurfaceOptions& options = {}, Task task = {});

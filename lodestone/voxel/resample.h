@@ -18,12 +18,12 @@ double voxel_value(const BitVolume& volume, Vec3d at);
 /// Which share of each larger voxel is set, 0 to 255 (to the nearest), from exact counts. Larger voxel i takes voxels
 /// floor(i r) to floor((i + 1) r) - 1 with r = old size / new size along each axis, so any size up to the old one will
 /// do; where r is not whole, places are off by up to half a small voxel. O(voxels / 64 + large voxels · r²). Errors:
-/// bad_argument (a size of 0 or above the old one), cancelled.
+/// bad_argument (a size of 0 or above the old one; those of validate()), cancelled.
 Result<ScalarVolume<std::uint8_t>> downsample(const BitVolume& volume, const std::array<std::uint32_t, 3>& size,
                                               Task task = {});
 
 /// As downsample(), but a larger voxel in which any is set counts as inside at 127.5, so that what is thinner than it
-/// stays: shares below a half are raised to just above it.
+/// stays: shares below a half are raised to just above it. Errors: as above.
 Result<ScalarVolume<std::uint8_t>> downsample_thin(const BitVolume& volume, const std::array<std::uint32_t, 3>& size,
                                                    Task task = {});
 

@@ -56,7 +56,7 @@ std::uint64_t scan_distance_bytes(const VoxelGrid& grid, std::uint64_t points);
 /// the outermost voxels that hold points, half a voxel more than the points on average, and what no inside is enclosed
 /// by stays a sheet one voxel thick. Same bits for any thread count. O(voxels · radius in voxels + n log n), memory 2.4
 /// bytes a voxel and 36 a point. Errors: empty (no points), bad_argument (options out of range, a radius that is more
-/// than a third of the longest side or above 170 voxels, points that are not finite or all in one place),
+/// than a third of the longest side or above 170 voxels, points all in one place; those of validate()),
 /// out_of_memory (more than most_bytes; the line says how much and which resolution fits), cancelled.
 Result<ScanSolid> scan_solid(const PointCloud& cloud, const ScanOptions& options = {}, const Task& task = {});
 
@@ -70,7 +70,7 @@ Result<ScanDistance> scan_distance(const PointCloud& cloud, const ScanOptions& o
 /// The triangles of a surface without those that have a corner farther than `most` (model units) from all points: of
 /// the shell around an open scan the side that the points lie on, with borders; it may touch itself in single vertices.
 /// Vertices that none uses are gone; no attributes. Same bytes for any thread count. O(vertices log points). Errors:
-/// empty (no triangle left, no points), bad_argument (positions that are not finite), cancelled.
+/// empty (no triangle left, no points), bad_argument (those of validate(), of both), cancelled.
 Result<Mesh> trim_to_points(const Mesh& mesh, const PointCloud& cloud, double most, const Task& task = {});
 
 }  // namespace lodestone::voxel

@@ -19,7 +19,7 @@ struct ScanPlan {
 };
 
 /// Checks cloud and options, all but the normals.
-Result<void> check_scan(const PointCloud& cloud, const ScanOptions& options);
+Result<void> check_scan(const PointCloud& cloud, const ScanOptions& options, const Task& task);
 
 /// Grid and radius. `extra` more voxels are left empty all around. `bytes` says what a grid needs.
 Result<ScanPlan> plan_scan(const PointCloud& cloud, const spatial::KdTree& tree, const ScanOptions& options,

@@ -159,7 +159,7 @@ std::uint64_t scan_distance_bytes(const VoxelGrid& grid, std::uint64_t points) {
 }
 
 Result<ScanDistance> scan_distance(const PointCloud& cloud, const ScanOptions& options, const Task& task) {
-  if (const Result<void> ok = detail::check_scan(cloud, options); !ok) return fail(ok.error());
+  if (const Result<void> ok = detail::check_scan(cloud, options, task); !ok) return fail(ok.error());
   if (cloud.normals.size() != cloud.size()) {
     return fail(ErrorCode::bad_argument, "the points have no normals", "scan", "estimate them");
   }

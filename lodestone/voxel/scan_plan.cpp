@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lodestone/base/units.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/voxel/morphology.h"
 #include "lodestone/voxel/scan_detail.h"
 #include "lodestone/voxel/voxelize.h"
@@ -57,7 +58,7 @@ Error too_large(const VoxelGrid& grid, std::uint64_t needed, std::uint64_t most,
 
 }  // namespace
 
-Result<void> check_scan(const PointCloud& cloud, const ScanOptions& options) {
+Result<void> check_scan(const PointCloud& cloud, const ScanOptions& options, const Task& task) {
   if (cloud.positions.empty()) return fail(ErrorCode::empty, "there are no points", "scan");
   if (options.resolution < 16 || options.resolution > 65535) {
     return fail(ErrorCode::bad_argument, fmt::format("a resolution of {} can't be", options.resolution), "scan",
@@ -74,9 +75,7 @@ Result<void> check_scan(const PointCloud& cloud, const ScanOptions& options) {
     return fail(ErrorCode::bad_argument, fmt::format("{} neighbours can't be used", options.neighbors), "scan",
                 "use 1 to 64");
   }
-  if (!std::all_of(cloud.positions.begin(), cloud.positions.end(), [](Vec3f p) { return is_finite(p); })) {
-    return fail(ErrorCode::bad_argument, "some positions are not finite", "scan", "leave these points out");
-  }
+  if (const Result<void> ok = validate(cloud, task); !ok) return fail(ok.error());
   const Box3d bounds = bounds_of(cloud);
   const Vec3d size = bounds.size();
   const double longest = std::max({size.x, size.y, size.z});

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "lodestone/base/parallel.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/spatial/kd_tree.h"
 #include "lodestone/voxel/scan.h"
 
@@ -28,9 +29,8 @@ std::vector<std::uint8_t> near_points(const Mesh& mesh, const PointCloud& cloud,
 
 Result<Mesh> trim_to_points(const Mesh& mesh, const PointCloud& cloud, double most, const Task& task) {
   if (cloud.positions.empty()) return fail(ErrorCode::empty, "there are no points", "scan");
-  if (!std::all_of(cloud.positions.begin(), cloud.positions.end(), [](Vec3f p) { return is_finite(p); })) {
-    return fail(ErrorCode::bad_argument, "some positions are not finite", "scan", "leave these points out");
-  }
+  if (const Result<void> ok = validate(cloud, task); !ok) return fail(ok.error());
+  if (const Result<void> ok = validate(mesh, task); !ok) return fail(ok.error());
   const std::vector<std::uint8_t> near = near_points(mesh, cloud, most, task);
   if (task.cancelled()) return cancelled_error("scan");
   Mesh out;

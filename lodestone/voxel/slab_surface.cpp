@@ -7,6 +7,7 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/stopwatch.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/voxel/cube_surface_detail.h"
 #include "lodestone/voxel/resample.h"
 
@@ -74,6 +75,12 @@ Result<void> take_slab(const BitVolume& solid, std::uint32_t ratio_z, std::uint3
 Result<SlabSurface> slab_surface(const spatial::Surface& surface, const VoxelGrid& grid,
                                  const std::array<std::uint32_t, 3>& size, const VoxelizeOptions& options, Task task) {
   if (const Result<void> ok = check(grid, size, options); !ok) return fail(ok.error());
+  if (const Result<void> ok = validate(grid); !ok) return fail(ok.error());
+  if (options.input != Input::valid) {
+    if (const Result<void> ok = validate(surface, task); !ok) return fail(ok.error());
+  }
+  VoxelizeOptions of_slab = options;
+  of_slab.input = Input::valid;
   SlabSurface out;
   Stopwatch watch;
   InsideRows rows(size[0], size[1], size[2]);
@@ -87,7 +94,7 @@ Result<SlabSurface> slab_surface(const spatial::Surface& surface, const VoxelGri
     slab.size[2] = std::min(slices, size[2] - z) * ratio;
     slab.origin.z += grid.spacing.z * first;
     watch.lap();
-    const Result<Voxelized> made = voxelize(surface, slab, options, task);
+    const Result<Voxelized> made = voxelize(surface, slab, of_slab, task);
     if (!made) return fail(made.error());
     out.voxelize_seconds += watch.lap();
     out.voxels_inside += made->volume.set_count();

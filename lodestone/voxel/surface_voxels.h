@@ -16,7 +16,7 @@ enum class Thickness {
 /// Voxels of triangles, closed or not (M. Schwarz and H.-P. Seidel, Fast parallel surface and solid voxelization on
 /// GPUs, SIGGRAPH Asia 2010: the triangle's plane, then its three projections). O(triangles + voxels of their boxes),
 /// memory an eighth of a byte a voxel and 4 bytes a triangle and slab. Same bits for any thread count. Errors:
-/// bad_argument (a grid without voxels, or with sides above 65,535), cancelled.
+/// bad_argument (a grid without voxels, or with sides above 65,535; those of validate()), cancelled.
 Result<BitVolume> surface_voxels(const spatial::Surface& surface, const VoxelGrid& grid,
                                  Thickness thickness = Thickness::conservative, Task task = {});
 

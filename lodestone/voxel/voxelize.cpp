@@ -12,6 +12,7 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/stopwatch.h"
+#include "lodestone/core/validate.h"
 #include "lodestone/voxel/column_raster_detail.h"
 #include "lodestone/voxel/fill_winding_detail.h"
 #include "lodestone/voxel/surface_voxels.h"
@@ -142,6 +143,10 @@ Result<VoxelGrid> grid_over(const Box3d& bounds, const std::array<std::uint32_t,
 Result<Voxelized> voxelize(const spatial::Surface& surface, const VoxelGrid& grid, const VoxelizeOptions& options,
                            Task task) {
   if (const Result<void> ok = check(grid); !ok) return fail(ok.error());
+  if (const Result<void> ok = validate(grid); !ok) return fail(ok.error());
+  if (options.input != Input::valid) {
+    if (const Result<void> ok = validate(surface, task); !ok) return fail(ok.error());
+  }
   Stopwatch watch;
   Voxelized out;
   if (options.fill == FillRule::shrinkwrap) {

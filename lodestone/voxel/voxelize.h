@@ -6,6 +6,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/core/input.h"
 #include "lodestone/core/volume.h"
 #include "lodestone/math/box.h"
 #include "lodestone/spatial/surface.h"
@@ -26,7 +27,8 @@ enum class FillRule {
 
 struct VoxelizeOptions {
   FillRule fill = FillRule::parity;
-  double close_voxels = 2;  ///< shrinkwrap: the radius, voxels
+  double close_voxels = 2;         ///< shrinkwrap: the radius, voxels
+  Input input = Input::unchecked;  ///< of the surface
 };
 
 struct VoxelizeSeconds {
@@ -55,7 +57,7 @@ Result<VoxelGrid> grid_over(const Box3d& bounds, const std::array<std::uint32_t,
 /// a crossing is in single precision. Same bits for any thread count. O(triangles + voxels / 64), memory an
 /// eighth of a byte a voxel and some 12 bytes a triangle, with `nonzero` 8 more a crossing; `winding`: some
 /// microseconds for each of three voxels or so between two crossings. Errors: bad_argument (a grid without voxels, or
-/// with sides above 65,535), cancelled.
+/// with sides above 65,535; those of validate()), cancelled.
 Result<Voxelized> voxelize(const spatial::Surface& surface, const VoxelGrid& grid, const VoxelizeOptions& options = {},
                            Task task = {});
 

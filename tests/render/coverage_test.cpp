@@ -16,7 +16,6 @@ using test::samples_of;
 using test::scene_of;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // A flat grid over the whole picture, its inner vertices shaken but no triangle turned.
 Mesh shaken_grid(int cells, float side, const std::vector<int>& shakes) {
@@ -151,11 +150,12 @@ TEST(Coverage, TurnedAwayAndWithoutAreaIsNothing) {
   EXPECT_EQ(samples_of(frame_of(scene_of(thin), flat_camera(side), side)), 0U);
 }
 
-TEST(Coverage, NumbersThatAreNoneDoNoHarm) {
+// Numbers that are none are refused: entries_test.cpp.
+TEST(Coverage, PositionsAsFarAsFloatsGoDoNoHarm) {
   const std::uint32_t side = 32;
   Mesh mesh = test::square(32);
-  mesh.positions.insert(mesh.positions.end(), {{kNan, 0, 1}, {kInfinity, 1, 1}, {1, -kInfinity, 1}, {5, 5, 3e38F}});
-  mesh.triangles.insert(mesh.triangles.end(), {{0, 1, 4}, {1, 5, 2}, {6, 2, 3}, {0, 1, 7}});
+  mesh.positions.insert(mesh.positions.end(), {{5, 5, 3e38F}, {5, 5, -3e38F}});
+  mesh.triangles.insert(mesh.triangles.end(), {{0, 1, 4}, {1, 5, 2}});
   const render::Scene scene = scene_of(mesh);
   EXPECT_EQ(samples_of(frame_of(scene, flat_camera(side), side)), std::size_t{side} * side * 4);
   EXPECT_TRUE(is_finite(scene.bounds().max));
