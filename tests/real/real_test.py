@@ -185,7 +185,7 @@ def gltf(t):
     """What is written has never more errors than what was read; none at all but for what cannot be mended, only told."""
     made = t.scratch / "made"
     made.mkdir()
-    jobs = [(path, compression) for path in [*t.models("textured"), *write_all(made)] for compression in ("none", "meshopt", "draco")]
+    jobs = [(path, compression) for path in [*t.models("textured"), *write_all(made)[t.share - 1::t.shares]] for compression in ("none", "meshopt", "draco")]
     jobs += [(path, "none") for path in t.models("broken")]
     written = {}
     for path, compression in jobs:
