@@ -12,7 +12,7 @@ namespace lodestone::chain {
 namespace {
 
 constexpr std::size_t kNeighbors = 8;
-constexpr std::size_t kChunk = 4096;
+constexpr std::size_t kWedgesAtOnce = 4096;
 
 bool is_black(const std::array<std::uint8_t, 4>& c) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
 
@@ -42,7 +42,7 @@ void add_scan_colors(const PointCloud& cloud, const spatial::KdTree& tree, doubl
   AttributeStream stream = make_stream("COLOR_0", Semantic::color, 3, ComponentType::uint16, true, mesh.wedge_count());
   auto& values = std::get<std::vector<float>>(stream.values);
   const std::size_t wedges = mesh.wedge_count();
-  parallel_for(wedges, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+  parallel_for(wedges, kWedgesAtOnce, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::array<spatial::Neighbor, kNeighbors> near{};
     for (std::size_t w = begin; w < end; ++w) {
       const Vec3d at = mesh.position(mesh.vertex_of(static_cast<std::uint32_t>(w))) - cloud.offset;

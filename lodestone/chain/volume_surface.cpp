@@ -19,7 +19,7 @@ namespace lodestone::chain {
 
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 20;
+constexpr std::size_t kVoxelsAtOnce = std::size_t{1} << 20;
 constexpr std::size_t kBins = 1024;
 constexpr std::size_t kMostLabels = 4096;
 
@@ -31,7 +31,7 @@ struct Range {
 template <class T>
 Range range_of(std::span<const T> values, const Task& task) {
   return parallel_reduce(
-      values.size(), kChunk, task, Range{},
+      values.size(), kVoxelsAtOnce, task, Range{},
       [&](std::size_t begin, std::size_t end) {
         Range r;
         for (std::size_t i = begin; i < end; ++i) {

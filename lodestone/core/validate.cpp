@@ -273,7 +273,7 @@ Result<void> validate(const CollapseLog& log, const Mesh& mesh, const Task& task
   const auto& collapses = log.collapses;
   const auto is_bad = [&](std::size_t i) {
     const Collapse& c = collapses[i];
-    return (std::max(c.kept, c.removed) >= vertices) | (c.first_wedge > log.wedges.size()) | is_infinite(c.position);
+    return std::max(c.kept, c.removed) >= vertices || c.first_wedge > log.wedges.size() || is_infinite(c.position);
   };
   if (const std::size_t i = first_bad(collapses.size(), task, is_bad); i < collapses.size()) {
     const Collapse& c = collapses[i];

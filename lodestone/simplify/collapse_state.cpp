@@ -38,7 +38,8 @@ std::vector<std::uint32_t> space_filling_order(const Mesh& mesh, const Box3f& bo
   parallel_for(keys.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t v = begin; v < end; ++v) {
       const Vec3f p = (mesh.positions[v] - box.min) * cells;
-      const auto cell = [](float c) { return static_cast<std::uint32_t>(std::clamp(c, 0.0F, 1023.0F)); };
+      // Not a number, where a box of finite floats is wider than the largest float: any cell will do.
+      const auto cell = [](float c) { return c > 0 ? static_cast<std::uint32_t>(std::min(c, 1023.0F)) : 0U; };
       keys[v] = {morton_key(cell(p.x), cell(p.y), cell(p.z)), static_cast<std::uint32_t>(v)};
     }
   });

@@ -1,8 +1,8 @@
 #include "lodestone/base/file.h"
+#include "support/folder.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <fstream>
 
@@ -11,17 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class File : public ::testing::Test {
+class File : public test::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lodestone_file_test_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   std::size_t entries() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
-  fs::path folder_;
 };
 
 TEST_F(File, commit_puts_the_bytes_under_the_name) {

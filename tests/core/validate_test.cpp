@@ -49,7 +49,7 @@ TEST(Validate, later_meshes_and_nameless_ones_are_named_by_number) {
 TEST(Validate, of_many_faults_the_first_is_told_for_any_number_of_threads) {
   Mesh mesh = test::grid(300);
   ASSERT_GT(mesh.triangles.size(), std::size_t{2} << 16);
-  for (const std::size_t t : {170'000, 70'001, 140'000}) mesh.triangles[t][2] = 1'000'000;
+  for (const std::size_t t : {170'000U, 70'001U, 140'000U}) mesh.triangles[t][2] = 1'000'000;
   for (const int threads : {1, 2, 7}) {
     test::expect_refused(validate(mesh, Task::root({}, threads)), "mesh: triangle 70001 names wedge 1000000 of 90601",
                          "grid");

@@ -100,6 +100,14 @@ struct GltfBuilder {
   }
 };
 
+/// A model of one node with one sheet of 3 x 3 cells.
+inline GltfBuilder sheet_model() {
+  GltfBuilder b;
+  b.json["meshes"] = {{{"primitives", {b.sheet(3, 1.5F)}}}};
+  b.json["nodes"] = {{{"mesh", 0}}};
+  return b;
+}
+
 /// JSON and binary chunk of a GLB that was written.
 struct GlbContent {
   Json json;

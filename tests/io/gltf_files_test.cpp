@@ -1,6 +1,5 @@
 // Written glTF as files: pairs of .gltf and .bin, pictures, compression, models that came from other formats.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "lodestone/io/gltf_read.h"
 #include "lodestone/io/gltf_write.h"
 #include "lodestone/io/write.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace lodestone::io {
@@ -20,13 +20,8 @@ namespace fs = std::filesystem;
 using test::GltfBuilder;
 using test::Json;
 
-class GltfFiles : public ::testing::Test {
+class GltfFiles : public test::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lodestone_gltf_files_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   void put(const char* name, const std::string& bytes) {
     auto file = OutputFile::create(folder_ / name);
     file->write(bytes);
@@ -45,7 +40,6 @@ class GltfFiles : public ::testing::Test {
     warnings_ = report->warnings;
     return test::open_glb(*read_file(folder_ / "out.glb")).json;
   }
-  fs::path folder_;
   std::vector<std::string> warnings_;
 };
 

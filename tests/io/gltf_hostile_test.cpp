@@ -18,13 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::GltfBuilder;
 using test::Json;
-
-GltfBuilder sheet_model() {
-  GltfBuilder b;
-  b.json["meshes"] = {{{"primitives", {b.sheet(3, 0)}}}};
-  b.json["nodes"] = {{{"mesh", 0}}};
-  return b;
-}
+using test::sheet_model;
 
 void expect_refused(const std::string& bytes, const std::string& what) {
   const Result<Model> model = read_gltf_bytes(bytes, "lie.glb");

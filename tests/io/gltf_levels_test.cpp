@@ -1,6 +1,5 @@
 // What written ladders keep of the glTF that they came from: attributes by primitive, types, nodes, animations.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -9,6 +8,7 @@
 #include "lodestone/base/file.h"
 #include "lodestone/io/gltf_read.h"
 #include "lodestone/io/gltf_write.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace lodestone::io {
@@ -19,14 +19,8 @@ using test::GlbContent;
 using test::GltfBuilder;
 using test::Json;
 
-class GltfLevels : public ::testing::Test {
+class GltfLevels : public test::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lodestone_gltf_levels_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   static Model read(const GltfBuilder& b) {
     Result<Model> model = read_gltf_bytes(b.glb(), "made.glb");
     EXPECT_TRUE(model) << model.error().line();
@@ -62,8 +56,6 @@ class GltfLevels : public ::testing::Test {
     const std::size_t id = json["nodes"][node]["extensions"]["MSFT_lod"]["ids"][level - 1].get<std::size_t>();
     return json["meshes"][json["nodes"][id]["mesh"].get<std::size_t>()];
   }
-
-  fs::path folder_;
   WriteReport report_;
 };
 

@@ -1,7 +1,6 @@
 // Meshopt compression in glTF under both its names: every form that the specification allows is read, and what is
 // written says nothing of it any more.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include "lodestone/io/gltf_read.h"
 #include "lodestone/io/gltf_write.h"
 #include "lodestone/io/meshopt_detail.h"
+#include "support/folder.h"
 
 namespace lodestone::io {
 namespace {
@@ -18,29 +18,19 @@ namespace {
 namespace fs = std::filesystem;
 using test::GltfBuilder;
 using test::Json;
+using test::sheet_model;
 
-class GltfMeshopt : public ::testing::Test {
+class GltfMeshopt : public test::InFolder {
  protected:
   void SetUp() override {
     if (!has_meshopt()) GTEST_SKIP() << "built without meshopt";
-    folder_ = fs::temp_directory_path() / ("lodestone_gltf_meshopt_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
   }
-  void TearDown() override { fs::remove_all(folder_); }
   void put(const std::string& name, const std::string& bytes) const {
     auto out = OutputFile::create(folder_ / name);
     out->write(bytes);
     ASSERT_TRUE(out->commit());
   }
-  fs::path folder_;
 };
-
-GltfBuilder sheet_model() {
-  GltfBuilder b;
-  b.json["meshes"] = {{{"primitives", {b.sheet(3, 1.5F)}}}};
-  b.json["nodes"] = {{{"mesh", 0}}};
-  return b;
-}
 
 // What stands for the uncompressed bytes: a file, a tagged buffer without bytes, a buffer that says nothing, a file
 // that is not there.

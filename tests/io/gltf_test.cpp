@@ -1,7 +1,6 @@
 #include "lodestone/io/gltf_read.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include "lodestone/core/validate.h"
 #include "lodestone/io/gltf_write.h"
 #include "lodestone/io/write.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace lodestone::io {
@@ -17,15 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Gltf : public ::testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lodestone_gltf_test_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  fs::path folder_;
-};
+class Gltf : public test::InFolder {};
 
 std::string base64(const std::string& bytes) {
   static const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -1,7 +1,6 @@
 // What a glTF file has against its specification is not repeated at every level: it is mended, so that what is written
 // is valid.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "lodestone/base/file.h"
 #include "lodestone/io/gltf_read.h"
 #include "lodestone/io/gltf_write.h"
+#include "support/folder.h"
 
 namespace lodestone::io {
 namespace {
@@ -20,14 +20,8 @@ using test::GlbContent;
 using test::GltfBuilder;
 using test::Json;
 
-class GltfValid : public ::testing::Test {
+class GltfValid : public test::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lodestone_gltf_valid_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   // The file that a ladder of the model and two levels of its first triangles becomes.
   GlbContent ladder_of(const GltfBuilder& b) {
     Result<Model> model = read_gltf_bytes(b.glb(), "made.glb");
@@ -37,7 +31,7 @@ class GltfValid : public ::testing::Test {
     Ladder ladder;
     ladder.original = *model;
     ladder.levels.resize(3);
-    for (std::size_t level : {1, 2}) {
+    for (std::size_t level : {1U, 2U}) {
       ladder.levels[level].model = *model;
       for (Mesh& mesh : ladder.levels[level].model.meshes) {
         mesh.triangles.resize(mesh.triangles.size() / 2 / level);
@@ -54,8 +48,6 @@ class GltfValid : public ::testing::Test {
     return std::any_of(warnings_.begin(), warnings_.end(),
                        [&](const std::string& w) { return w.find(part) != std::string::npos; });
   }
-
-  fs::path folder_;
   std::vector<std::string> warnings_;
 };
 

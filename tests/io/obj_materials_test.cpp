@@ -1,6 +1,5 @@
 // Materials and parts of OBJ: what is found, what comes out of an OBJ as it went in, and what glTF gets of it.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include "lodestone/io/image_encode.h"
 #include "lodestone/io/read.h"
 #include "lodestone/io/write.h"
+#include "support/folder.h"
 
 namespace lodestone::io {
 namespace {
@@ -27,15 +27,12 @@ void put_file(const fs::path& path, const std::string& content) {
   EXPECT_TRUE(out->commit());
 }
 
-class ObjMaterialsTest : public ::testing::Test {
+class ObjMaterialsTest : public test::InFolder {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lodestone_obj_materials_" + std::to_string(::getpid()));
     fs::create_directories(folder_ / "in");
     fs::create_directories(folder_ / "out");
   }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path put(const std::string& name, const std::string& text) {
     const fs::path path = folder_ / "in" / name;
     fs::create_directories(path.parent_path());
@@ -65,7 +62,6 @@ class ObjMaterialsTest : public ::testing::Test {
     const auto* bytes = reinterpret_cast<const char*>((*image)->encoded.data());
     return std::string(bytes, (*image)->encoded.size());
   }
-  fs::path folder_;
 };
 
 TEST_F(ObjMaterialsTest, textures_are_found_where_they_are_today) {

@@ -1,6 +1,5 @@
 // PLY, OBJ, STL and OFF: what files in the wild look like, round trips, and damage.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include "lodestone/io/read.h"
 #include "lodestone/io/stl.h"
 #include "lodestone/io/write.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace lodestone::io {
@@ -160,15 +160,7 @@ TEST(Off, joined_words_and_comments) {
   EXPECT_FALSE(off("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"));
 }
 
-class Folder : public ::testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lodestone_io_test_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  fs::path folder_;
-};
+class Folder : public test::InFolder {};
 
 using RoundTrip = Folder;
 

@@ -1,6 +1,5 @@
 // PLY, OBJ and OFF: what they keep of colours, numbers, groups and materials, and that they tell what they don't.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "lodestone/io/ply.h"
 #include "lodestone/io/read.h"
 #include "lodestone/io/write.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace lodestone::io {
@@ -69,14 +69,8 @@ std::size_t count_of(const std::vector<std::string>& warnings, const std::string
       warnings.begin(), warnings.end(), [&](const std::string& w) { return w.find(part) != std::string::npos; }));
 }
 
-class PlainLosses : public ::testing::Test {
+class PlainLosses : public test::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lodestone_plain_losses_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path put(const std::string& name, const std::string& content) {
     auto out = OutputFile::create(folder_ / name);
     out->write(content);
@@ -94,8 +88,6 @@ class PlainLosses : public ::testing::Test {
     return back ? *back : Model{};
   }
   std::string text(const std::string& name) { return read_file(folder_ / name).value_or(""); }
-
-  fs::path folder_;
   std::vector<std::string> told_;  // by the writer
 };
 

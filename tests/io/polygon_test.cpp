@@ -140,17 +140,18 @@ TEST(Polygon, triangles_are_constrained_delaunay) {
       for (std::size_t k = 0; k < 3; ++k) apex[{t[k], t[(k + 1) % 3]}] = t[(k + 2) % 3];
     }
     for (const auto& [edge, r] : apex) {
-      const auto other = apex.find({edge.second, edge.first});
+      const std::uint32_t from = edge.first, to = edge.second;
+      const auto other = apex.find({to, from});
       if (other == apex.end()) continue;
-      const auto angle = [&](std::uint32_t at) {
-        const Vec3d a = p[edge.first] - p[at], b = p[edge.second] - p[at];
+      const auto angle = [&, from, to](std::uint32_t at) {
+        const Vec3d a = p[from] - p[at], b = p[to] - p[at];
         return std::acos(std::clamp(dot(normalized(a), normalized(b)), -1.0, 1.0));
       };
       const auto area = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         return cross(p[b] - p[a], p[c] - p[a]).z;
       };
       const std::uint32_t s = other->second;
-      const bool convex = area(r, edge.first, s) > 1e-9 && area(s, edge.second, r) > 1e-9;
+      const bool convex = area(r, from, s) > 1e-9 && area(s, to, r) > 1e-9;
       EXPECT_TRUE(!convex || angle(r) + angle(s) < kTurn / 2 + 1e-6);
     }
   }

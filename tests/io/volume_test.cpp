@@ -9,6 +9,7 @@
 
 #include "lodestone/io/dicom_stack_detail.h"
 #include "support/comma_locale.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace lodestone::io {
@@ -97,19 +98,13 @@ TEST(DicomStack, lists_several_series) {
   EXPECT_EQ(*detail::choose_series(slices, "3"), (std::vector<std::size_t>{3}));
 }
 
-class VolumeFiles : public ::testing::Test {
+class VolumeFiles : public test::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lodestone-volume-" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   fs::path write(const std::string& name, const std::string& bytes) {
     const fs::path path = folder_ / name;
     std::ofstream(path, std::ios::binary) << bytes;
     return path;
   }
-  fs::path folder_;
 };
 
 TEST_F(VolumeFiles, raw_values_of_either_order) {
@@ -165,7 +160,7 @@ TEST_F(VolumeFiles, nifti_2_is_read_and_turned_to_the_patients_axes) {
 
 TEST_F(VolumeFiles, damaged_nifti_2_is_refused) {
   const std::string good = nifti2({3, 4, 5, 1, 0}, 2, 60);
-  for (const std::size_t cut : {12, 100, 543, 560, 603}) {
+  for (const std::size_t cut : {12U, 100U, 543U, 560U, 603U}) {
     EXPECT_FALSE(read_volume(write("cut.nii", good.substr(0, cut)))) << cut;
   }
   EXPECT_FALSE(read_volume(write("side.nii", nifti2({3, -4, 5, 1, 0}, 2, 60))));

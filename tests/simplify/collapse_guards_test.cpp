@@ -115,7 +115,7 @@ TEST_P(CollapseGuards, hold_at_every_count) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     const Mesh in = GetParam().make(seed);
     const Topology before = topology_of(in);
-    for (const std::size_t part : {2, 5, 20, 1000}) {
+    for (const std::size_t part : {2U, 5U, 20U, 1000U}) {
       EdgeCollapseOptions options;
       options.target_triangles = std::max<std::size_t>(1, in.triangles.size() / part);
       const Result<EdgeCollapseResult> out = collapse_edges(in, options);

@@ -197,7 +197,7 @@ TEST(EdgeCollapse, coordinates_at_the_end_of_float_stay_finite) {
   float most = 0;
   for (const Vec3f& p : in.positions) most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   for (Vec3f& p : in.positions) p = p * (std::numeric_limits<float>::max() / most * 0.999F);
-  for (const std::size_t target : {500, 100, 1}) {
+  for (const std::size_t target : {500U, 100U, 1U}) {
     for (const Vec3f& p : collapse(in, target).mesh.positions) EXPECT_TRUE(is_finite(p));
   }
 }

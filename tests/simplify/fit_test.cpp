@@ -187,7 +187,7 @@ TEST(SplitWorst, adds_triangles_and_keeps_the_surface_whole) {
 TEST(SplitWorst, of_neighbours_that_have_been_cut) {
   const Mesh original = bumpy(60);
   const FitTarget target(original);
-  for (const std::size_t triangles : {200, 700, 2000}) {
+  for (const std::size_t triangles : {200U, 700U, 2000U}) {
     const FittedLevel level(target, collapsed(original, triangles), {});
     const SplitResult split = split_worst(level, 0, level.mesh().triangles.size(), false, {}, {}, {});
     EXPECT_GT(split.mesh.triangles.size(), level.mesh().triangles.size());

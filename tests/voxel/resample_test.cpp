@@ -28,7 +28,7 @@ TEST(VoxelValue, is_the_voxel_at_its_centre_and_linear_between) {
         const auto bit = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
           return volume.at(x + i, y + j, z + k) ? 1.0 : 0.0;
         };
-        EXPECT_EQ(voxel_value(volume, Vec3d(x, y, z)), bit(0, 0, 0));
+        EXPECT_EQ(voxel_value(volume, {1.0 * x, 1.0 * y, 1.0 * z}), bit(0, 0, 0));
         // Equation 2-14 written out.
         const double u = 0.25, v = 0.5, w = 0.125;
         const double want = (1 - u) * (1 - v) * (1 - w) * bit(0, 0, 0) + u * (1 - v) * (1 - w) * bit(1, 0, 0) +
