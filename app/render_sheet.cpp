@@ -103,7 +103,8 @@ Result<std::vector<Source>> sources_of(const std::vector<std::string>& inputs) {
   return sources;
 }
 
-// Errors are measured anew, so that any files will do. They never fall along a ladder.
+// Errors are measured anew, so that any files will do. Along a ladder in one file they never fall; files that were
+// given one by one may come from anywhere, and each has its own.
 Result<std::vector<report::SheetLevel>> read_levels(const std::vector<Source>& sources, const Request& request,
                                                     SheetReport& report, const Console& console) {
   std::vector<report::SheetLevel> levels;
@@ -125,7 +126,8 @@ Result<std::vector<report::SheetLevel>> read_levels(const std::vector<Source>& s
     } else {
       const Result<measure::Distance> distance = reference->distance_to(*model, {}, task.part(0.3));
       if (!distance) return fail(distance.error());
-      error = std::max(levels.back().error, distance->trusted_max());
+      const bool ladder = source.file == sources.front().file;
+      error = ladder ? std::max(levels.back().error, distance->trusted_max()) : distance->trusted_max();
     }
     Result<render::Scene> scene = render::Scene::create(*model, {}, task.part(0.3));
     if (!scene) return fail(scene.error());

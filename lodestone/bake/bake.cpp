@@ -1,3 +1,11 @@
+// How textures are baked: every texel looks through the target at the source.
+//
+// 1. set_frames(): the target gets the unit normals and tangents that its normal map will refer to.
+// 2. detail::texel_owners(): which triangle covers each texel, or lies beside it within what a bilinear filter reads.
+// 3. Tile by tile, on all threads: a texel's points on the target (`looks` squared of them) are looked up in the source
+//    at once (BakeSource::find()); their mean colour, in linear light, and their mean normal, in the target's
+//    interpolated frame, become the texel. Each tile writes texels of its own, so threads change no byte.
+// 4. detail::dilate(): colours are carried on around the charts, so that mipmaps don't bleed.
 #include "lodestone/bake/bake.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,9 @@
+// Files that are whole or not there.
+//
+// Reading takes regular files only: a device would never end. Writing goes to a hidden file beside the output, which is
+// renamed over it by commit(), or removed with the object. The output's place is settled when it is created: a symbolic
+// link is followed, a write-protected file refused, permissions kept. Outputs of several files are gathered in a
+// StagingFolder; its commit() moves older files aside first and, where a move fails, puts all of them back.
 #include "lodestone/base/file.h"
 #include "lodestone/base/text.h"
 

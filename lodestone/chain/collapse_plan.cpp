@@ -1,3 +1,14 @@
+// One order of steps for a whole model, from which every level is a prefix.
+//
+// 1. plan_mesh(): each drawn mesh is collapsed once, as far as the smallest level may need; its log holds the steps
+// with
+//    their errors in world space. Where parts may vanish, simplify::thin_parts() gives their steps, too.
+// 2. merge(): the steps of all meshes by error. Within a mesh errors never fall, so a stable sort keeps its order.
+// 3. count_triangles(): how many triangles are drawn after each prefix (a mesh counts once for each instance), so that
+//    prefix_for() finds a level by halving.
+// 4. model_after(): replays each mesh's share of a prefix, leaves out what has vanished, lets neighbours grow by the
+// area
+//    that went, and finishes tangents and skin weights.
 #include <fmt/format.h>
 
 #include <algorithm>

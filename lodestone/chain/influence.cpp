@@ -1,3 +1,6 @@
+// What users tell of a model (spheres, a weight attribute, ranges of triangles, names) becomes one weight and one lock
+// a vertex, and one mark a triangle that must not change. Of several opinions the largest weight counts, and a lock
+// wins; a mesh that is drawn several times obeys all its instances.
 #include "lodestone/chain/influence.h"
 
 #include <fmt/format.h>

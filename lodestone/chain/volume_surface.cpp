@@ -1,3 +1,11 @@
+// From the voxels of a scanner to a model.
+//
+// 1. range_of(): least and most, and how many voxels hold no number.
+// 2. Without labels: a threshold (asked for, or Otsu's: the one that separates two classes best), smoothing against
+//    noise, an isosurface by marching cubes in the grid's frame.
+//    With labels: the boxes of all numbers in one pass (values that look like grey ones are refused), then for each
+//    label a mask of its box, contoured half way.
+// 3. to_world(): the patient's or file's frame; slices that are unevenly spaced or tilted are placed where they lie.
 #include "lodestone/chain/volume_surface.h"
 
 #include <fmt/format.h>

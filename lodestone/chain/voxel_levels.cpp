@@ -1,3 +1,12 @@
+// Paper 000's order of work: the model is voxelized once, finely (section 2.2), and every level comes from that solid.
+//
+// 1. create(): a Solid (chain/solid) of at least `supersample` voxels a voxel of the finest level. Where it does not
+//    fit into memory, only the surface is kept and voxels are made slab by slab when a level is asked for.
+// 2. even_surface_at(): the solid is resampled to the level's resolution and contoured: by the paper's march along the
+//    edge (edge_ratio), by the share of each voxel that is inside (linear, project), or with one vertex in a cube
+//    (sharp). With keep_volume the iso is sought, by halving, at which the surface encloses as much as the solid.
+// 3. surface_at(): with `adaptive`, flat regions are merged by edge collapse within a part of a voxel.
+// 4. vanished(): parts of the model that have no vertex within a voxel of the surface are told.
 #include "lodestone/chain/voxel_levels.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,9 @@
+// Which resolution gives a wanted count or error.
+//
+// Triangles of a voxel surface grow with the square of its resolution, and errors shrink about with its inverse. So a
+// coarse surface is counted first (growth_of()), which tells how fine the solid must be; then find_count() and
+// find_error() go by these laws between two resolutions, one too coarse, the other too fine, until they are neighbours
+// or within some percent. Levels that are collapsed afterwards start from a surface that is several times finer.
 #include "lodestone/chain/level_error_detail.h"
 #include "lodestone/chain/voxel_search_detail.h"
 

@@ -1,3 +1,11 @@
+// Any level from the log of one edge collapse (the idea of paper 001's progressive mesh: a record of collapses).
+//
+// replay() of the first n collapses:
+// 1. fates_after(): backwards over the prefix, where each vertex and wedge ends up; the fate of the kept one is known
+//    before that of the removed one is asked for, so one step finds it.
+// 2. Triangles whose corners still differ stay, with their wedges replaced.
+// 3. move_positions() and blend_attributes(): forwards, what each collapse did to position and wedges.
+// 4. compact(): vertices and wedges that are used, in their original order.
 #include "lodestone/core/collapse_log.h"
 
 #include <fmt/format.h>

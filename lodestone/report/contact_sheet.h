@@ -16,7 +16,7 @@ namespace lodestone::report {
 
 struct SheetLevel {
   render::Scene scene;
-  double error = 0;  ///< distance to the original, model units; must not fall from level to level
+  double error = 0;  ///< distance to the original, model units
 };
 
 struct SheetOptions {
