@@ -6,6 +6,7 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/math/triangle.h"
+#include "lodestone/spatial/thin_pieces_detail.h"
 
 namespace lodestone::spatial {
 
@@ -42,7 +43,11 @@ struct Visit {
 }  // namespace
 
 Bvh::Bvh(const Surface& surface, const Task& task) : surface_(surface), center_(surface.bounds.center()) {
-  std::size_t count = surface.triangles.size();
+  const std::vector<detail::Piece> pieces = detail::thin_pieces(surface, task);
+  leaf_triangle_.reserve(pieces.size());
+  for (const detail::Piece& piece : pieces) leaf_triangle_.push_back(piece.triangle);
+  const std::size_t leaves = pieces.empty() ? surface.triangles.size() : pieces.size();
+  std::size_t count = leaves;
   std::vector<std::size_t> sizes;
   do {
     count = (count + 3) / 4;
@@ -68,11 +73,17 @@ Bvh::Bvh(const Surface& surface, const Task& task) : surface_(surface), center_(
   parallel_for(sizes[0], kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t n = begin; n < end; ++n) {
       for (std::size_t slot = 0; slot < 4; ++slot) {
-        const std::size_t t = n * 4 + slot;
+        const std::size_t leaf = n * 4 + slot;
         Box3f box = nowhere;
-        if (t < surface.triangles.size()) {
+        if (leaf < leaves) {
           box = Box3f{};
-          for (const Vec3d c : surface.corners(t)) box.add(to_float((c - center_) * scale_));
+          const auto add = [&](Vec3d c) { box.add(to_float((c - center_) * scale_)); };
+          if (pieces.empty()) {
+            for (const Vec3d c : surface.corners(leaf)) add(c);
+          } else {
+            add(pieces[leaf].box.min);
+            add(pieces[leaf].box.max);
+          }
           box.min -= {margin, margin, margin};
           box.max += {margin, margin, margin};
         }
@@ -111,7 +122,8 @@ Nearest Bvh::test(Vec3d p, std::uint32_t triangle) const {
 template <class Take>
 void Bvh::search(Vec3d p, const double& limit_sq, Take&& take) const {
   const Vec3d local = (p - center_) * scale_;
-  if (!(length_sq(local) < 1e24)) return take(0U);  // so far away that double can't tell one triangle from another
+  if (!(length_sq(local) < 1e24))
+    return take(triangle_of(0));  // so far away that double can't tell one triangle from another
   const Vec3f q = to_float(local);
   const Float4 x{q.x, q.x, q.x, q.x}, y{q.y, q.y, q.y, q.y}, z{q.z, q.z, q.z, q.z};
   // Squared float distances are off by a few 1e-7 of themselves; q's own rounding is in the margin while it is near,
@@ -126,7 +138,7 @@ void Bvh::search(Vec3d p, const double& limit_sq, Take&& take) const {
     const Visit visit = stack[--top];
     if (visit.distance_sq > worst) continue;
     if (visit.level == 0) {
-      take(visit.index);
+      take(triangle_of(visit.index));
       worst = limit();
       continue;
     }
@@ -179,10 +191,17 @@ Nearest Bvh::closest_facing(Vec3d p, Vec3d normal, double within) const {
 
 void Bvh::all_within(Vec3d p, double within, std::vector<Nearest>& found) const {
   const double limit_sq = within * within;
+  const auto first = static_cast<std::ptrdiff_t>(found.size());
   search(p, limit_sq, [&](std::uint32_t triangle) {
     const Nearest one = test(p, triangle);
     if (one.distance_sq <= limit_sq) found.push_back(one);
   });
+  if (leaf_triangle_.empty()) return;
+  std::sort(found.begin() + first, found.end(),
+            [](const Nearest& a, const Nearest& b) { return a.triangle < b.triangle; });
+  found.erase(std::unique(found.begin() + first, found.end(),
+                          [](const Nearest& a, const Nearest& b) { return a.triangle == b.triangle; }),
+              found.end());
 }
 
 bool Bvh::triangles_in(const Box3d& box, std::size_t most, std::vector<std::uint32_t>& found) const {
@@ -216,10 +235,13 @@ bool Bvh::triangles_in(const Box3d& box, std::size_t most, std::vector<std::uint
         stack[top++] = {place.level - 1, child};
       } else {
         if (found.size() == most) return false;
-        found.push_back(child);
+        found.push_back(triangle_of(child));
       }
     }
   }
+  if (leaf_triangle_.empty()) return true;
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
   return true;
 }
 

@@ -19,7 +19,8 @@ struct Nearest {
 
 /// A packed tree: four children a node, the surface's Hilbert order cut into fours level by level, so nothing needs a
 /// pointer. Boxes are floats rounded outward, triangles are tested in double: the answer is exact in double precision.
-/// Build O(n), memory about 32 bytes a triangle. The surface must outlive the tree.
+/// Where many triangles are long and thin each of these has several boxes (thin_pieces_detail.h). Build O(n), memory
+/// about 32 bytes a triangle. The surface must outlive the tree.
 class Bvh {
  public:
   explicit Bvh(const Surface& surface, const Task& task = {});
@@ -33,11 +34,11 @@ class Bvh {
   /// than `within`; triangle = kNone where there is none.
   Nearest closest_facing(Vec3d p, Vec3d normal, double within) const;
 
-  /// All triangles not farther than `within`, appended to `found`. Their order depends on the surface alone.
+  /// All triangles not farther than `within`, once each, appended to `found`. Their order depends on the surface alone.
   void all_within(Vec3d p, double within, std::vector<Nearest>& found) const;
 
   /// The triangles whose boxes reach into `box`, into `found`: all that a point of it could touch. False, with `found`
-  /// incomplete, when there are more than `most`.
+  /// incomplete, when there are more boxes than `most`; each triangle once, otherwise.
   bool triangles_in(const Box3d& box, std::size_t most, std::vector<std::uint32_t>& found) const;
 
   const Surface& surface() const { return surface_; }
@@ -48,13 +49,15 @@ class Bvh {
     float min[3][4], max[3][4];
   };
   Nearest test(Vec3d p, std::uint32_t triangle) const;
+  std::uint32_t triangle_of(std::uint32_t leaf) const { return leaf_triangle_.empty() ? leaf : leaf_triangle_[leaf]; }
   // Visits triangles, near ones first, and calls take(triangle) for each whose box is within limit_sq, which it may
   // lower.
   template <class Take>
   void search(Vec3d p, const double& limit_sq, Take&& take) const;
 
   const Surface& surface_;
-  Vec3d center_;                            // boxes are relative to it,
+  std::vector<std::uint32_t> leaf_triangle_;  // of each leaf, where triangles have several; empty = its own number
+  Vec3d center_;                              // boxes are relative to it,
   double scale_ = 1;                        // and scaled so that they lie in [-1, 1]: no overflow, no subnormal numbers
   std::vector<Node> nodes_;                 // level 0 (children are triangles) first, the root last
   std::vector<std::uint32_t> level_first_;  // first node of each level, and the end

@@ -5,24 +5,15 @@
 
 #include "lodestone/io/image_encode.h"
 #include "lodestone/io/write.h"
-#include "tests/support/broken.h"
+#include "support/broken.h"
+#include "support/folder.h"
 
 namespace lodestone::io {
 namespace {
 
-namespace fs = std::filesystem;
-
-class Entries : public testing::Test {
+class Entries : public test::InFolder {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override {
-    EXPECT_TRUE(fs::is_empty(folder_));
-    fs::remove_all(folder_);
-  }
-  const fs::path folder_ = fs::path(testing::TempDir()) / "lodestone_entries";
+  void TearDown() override { EXPECT_TRUE(std::filesystem::is_empty(folder_)); }
 };
 
 TEST_F(Entries, of_io_refuse_a_broken_model_in_any_format) {

@@ -43,6 +43,45 @@ TEST(Bvh, answers_as_all_triangles_would) {
   }
 }
 
+// Long thin triangles across a square, whose boxes alone would all overlap.
+Mesh slivers(std::uint32_t count) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto at = static_cast<float>(i) / static_cast<float>(count);
+    const float wide = 0.1F / static_cast<float>(count);
+    mesh.positions.insert(mesh.positions.end(), {{at, 0, 0}, {at + wide, 0, 0.01F}, {1 + at, 1, 0.3F * at}});
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return mesh;
+}
+
+TEST(Bvh, thin_triangles_are_found_once_each) {
+  for (const std::uint32_t count : {1U, 7U, 500U}) {
+    SCOPED_TRACE(count);
+    const Mesh mesh = slivers(count);
+    expect_exact(mesh, 1.5);
+    const auto surface = flatten(make_model(mesh));
+    ASSERT_TRUE(surface);
+    const Bvh tree(*surface);
+    std::vector<Nearest> found;
+    tree.all_within({0.5, 0.5, 0.1}, 10, found);
+    EXPECT_EQ(found.size(), count);
+    std::vector<std::uint32_t> inside;
+    ASSERT_TRUE(tree.triangles_in(surface->bounds, 100'000, inside));
+    EXPECT_EQ(inside.size(), count);
+  }
+}
+
+TEST(Bvh, thin_triangles_have_near_neighbours_only) {
+  const auto surface = flatten(make_model(slivers(2000)));
+  ASSERT_TRUE(surface);
+  const Bvh tree(*surface);
+  std::vector<std::uint32_t> inside;
+  const Vec3d at{0.9, 0.5, 0.1}, near{0.005, 0.005, 0.005};
+  ASSERT_TRUE(tree.triangles_in({at - near, at + near}, 100'000, inside));
+  EXPECT_LT(inside.size(), 200U) << "boxes of whole triangles: over half of them";
+}
+
 TEST(Bvh, sizes_do_not_matter) {
   for (const float scale : {1e-30F, 1e-6F, 1e6F, 1e30F}) {
     Mesh mesh = test::torus(10);
