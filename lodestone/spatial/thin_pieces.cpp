@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kChunk = 4096;
 constexpr double kEmpty = 16;                                // box to triangle: half the box's surface by the area
 constexpr double kMostPieces = 256;                          // of a triangle
-constexpr std::size_t kMoreBoxes = 4, kFreeBoxes = 200'000;  // of all thin triangles: for each triangle, and beside
+constexpr std::size_t kMoreBoxes = 4, kFreeBoxes = 1'000'000;  // of all thin triangles: for each triangle, and beside
 
 double half_surface(Vec3d size) { return size.x * size.y + size.y * size.z + size.z * size.x; }
 
