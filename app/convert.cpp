@@ -5,6 +5,7 @@
 #include "app/shared_options.h"
 #include "app/text.h"
 #include "app/verbs.h"
+#include "lodestone/base/file.h"
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
 
@@ -39,6 +40,7 @@ Result<void> plan_levels(const Arguments& arguments, Plan& plan) {
       return fail(ErrorCode::bad_argument, "--level takes one level, {level} in the output writes all", {},
                   "leave one of them out");
     }
+    if (const Result<InputFile> there = InputFile::open(plan.input); !there) return fail(there.error());
     plan.levels = levels_in_file(plan.input);
     plan.read.levels = false;
     if (plan.levels > 1) return {};

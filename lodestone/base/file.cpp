@@ -42,6 +42,14 @@ tl::unexpected<Error> not_regular(const std::filesystem::path& path) {
   return fail(ErrorCode::cannot_read, "is not a regular file", path.string(), "copy it to a file first");
 }
 
+constexpr mode_t kPermissions = 0777;
+
+// Of the file in this place; 0 where there is none.
+mode_t permissions_at(const std::filesystem::path& place) {
+  struct stat status {};
+  return ::stat(place.c_str(), &status) == 0 ? status.st_mode & kPermissions : 0;
+}
+
 // What stands for an output until it is whole.
 std::filesystem::path hidden_beside(const std::filesystem::path& place) {
   return place.parent_path() / fmt::format(".{}.{}.tmp", place.filename().string(), ::getpid());
@@ -182,6 +190,10 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
     return fail(ErrorCode::cannot_write, error_number == ENOENT ? "its folder does not exist" : reason(error_number),
                 path.string(), error_number == ENOENT ? "make the folder first" : "");
   }
+  if (const mode_t old = permissions_at(*place); old != 0 && ::fchmod(file.descriptor_, old) != 0) {
+    return fail(ErrorCode::cannot_write, "its permissions cannot be kept: " + reason(errno), path.string(),
+                "choose another name");
+  }
   file.buffer_.reserve(kBufferBytes);
   return file;
 }
@@ -319,6 +331,11 @@ Result<std::vector<StagingFolder::Move>> StagingFolder::plan_moves() const {
   for (const std::filesystem::path& name : names) {
     const Result<std::filesystem::path> place = output_place(folder_ / name);
     if (!place) return fail(place.error());
+    const bool is_file = std::filesystem::is_regular_file(path() / name, error);
+    const mode_t old = is_file ? permissions_at(*place) : 0;
+    if (old != 0 && ::chmod((path() / name).c_str(), old) != 0) {
+      return fail(ErrorCode::cannot_write, "its permissions cannot be kept: " + reason(errno), place->string());
+    }
     moves.push_back({path() / name, *place, hidden_ / "old" / name});
   }
   return moves;

@@ -6,11 +6,15 @@
 
 namespace lodestone::chain::detail {
 
+bool tells(const CurvePoint& point, double diagonal) {
+  return point.triangles > 0 && point.error >= kLeastTelling * diagonal;
+}
+
 double most_in_line(const std::vector<CurvePoint>& finer, std::size_t triangles, double diagonal, bool of_parts) {
-  constexpr double kMost = 2, kSphere = 4, kPart = 4;
+  constexpr double kMost = 2, kSphere = 4, kPart = 4, kNoRuin = 1e-3;
   const CurvePoint *last = nullptr, *before = nullptr;
   for (const CurvePoint& point : finer) {
-    if (!(point.error > 0) || point.triangles == 0) continue;
+    if (!tells(point, diagonal)) continue;
     before = last;
     last = &point;
   }
@@ -24,7 +28,8 @@ double most_in_line(const std::vector<CurvePoint>& finer, std::size_t triangles,
   }
   const double step = shrinks(static_cast<double>(last->triangles), n);
   const double expected = last->error * (is_steep ? step * std::sqrt(step) : step);
-  return kMost * std::max(expected, (of_parts ? kPart : 1) * kSphere * diagonal / n);
+  const double few = (of_parts ? kPart : 1) * kSphere * diagonal / n;
+  return std::max(kMost * std::max(expected, few), kNoRuin * diagonal);
 }
 
 }  // namespace lodestone::chain::detail

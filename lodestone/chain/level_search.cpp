@@ -117,20 +117,21 @@ Result<Cut> find_error_cut(LevelMaker& maker, Starts& starts, double limit, cons
 
 namespace {
 
-// Without an error in a finer level, a level half way on the scale of logarithms tells what to expect. Errors below a
-// two-hundredth of the diagonal are no ruin.
+// Where no finer level tells anything, a level half way on the scale of logarithms does: if it is all but exact, too, as
+// much as the least error that tells. Before anything is known, errors below a two-hundredth of the diagonal are no ruin.
 Result<std::vector<CurvePoint>> curve_before(const LevelMaker& maker, const Cut& cut, std::vector<CurvePoint> finer,
                                              const Task& task) {
   constexpr double kSmall = 0.005;
   if (maker.plan().prunes()) return finer;  // the first part that vanishes is a jump by its nature
   const LevelError& e = cut.level.error;
-  const bool knows = std::any_of(finer.begin(), finer.end(), [](const CurvePoint& p) { return p.error > 0; });
-  if (knows || e.measured_error <= kSmall * e.diagonal) return finer;
+  const auto knows = [&](const CurvePoint& p) { return tells(p, e.diagonal); };
+  if (std::any_of(finer.begin(), finer.end(), knows) || e.measured_error <= kSmall * e.diagonal) return finer;
   const auto start = static_cast<double>(maker.plan().triangles_after(0));
   const auto between = static_cast<std::size_t>(std::sqrt(start * static_cast<double>(cut.level.triangles)));
   const Result<Cut> probe = maker.plain(maker.plan().prefix_for(between), task);
   if (!probe) return fail(probe.error());
-  finer.push_back({probe->level.triangles, probe->level.error.measured_error});
+  const double told = std::max(probe->level.error.measured_error, kLeastTelling * e.diagonal);
+  finer.push_back({probe->level.triangles, told});
   return finer;
 }
 

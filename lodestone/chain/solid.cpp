@@ -16,6 +16,7 @@ namespace {
 
 std::string reason_of(const Topology& t) {
   if (t.boundary_edges > 0) return fmt::format("{} edges are open", with_separators(t.boundary_edges));
+  if (!t.closed) return fmt::format("doubled faces hide {} open edges", with_separators(t.hidden_boundary_edges));
   return t.components > 1 ? fmt::format("{} closed pieces", with_separators(t.components)) : "closed";
 }
 
@@ -31,7 +32,7 @@ void widen(VoxelGrid& grid, std::uint32_t multiple) {
 }  // namespace
 
 voxel::FillRule fill_for(const Topology& t) {
-  if (t.boundary_edges > 0) return voxel::FillRule::winding;
+  if (!t.closed) return voxel::FillRule::winding;
   const bool pieces = t.components > 1 && t.boundary_edges + t.inconsistent_edges + t.nonmanifold_edges == 0;
   return pieces ? voxel::FillRule::nonzero : voxel::FillRule::parity;
 }
@@ -40,7 +41,7 @@ Result<FillChoice> choose_fill(const Model& model, std::optional<voxel::FillRule
   const Result<measure::Shape> shape = measure::shape_of(model, task);
   if (!shape) return fail(shape.error());
   const Topology& t = shape->topology;
-  FillChoice out{asked.value_or(fill_for(t)), reason_of(t), t.boundary_edges == 0, asked.has_value()};
+  FillChoice out{asked.value_or(fill_for(t)), reason_of(t), t.closed, t.duplicate_faces > 0, asked.has_value()};
   if (out.closed || asked != voxel::FillRule::parity) return out;
   return fail(ErrorCode::bad_argument, fmt::format("parity needs a closed surface, but {}", out.reason), {},
               "use --fill winding");
@@ -52,6 +53,12 @@ namespace {
 double close_voxels(const FillChoice& choice, double voxel) {
   constexpr double kUsual = 2;
   return choice.close > 0 ? choice.close / voxel : kUsual;
+}
+
+std::string way_out_of_nothing(const FillChoice& choice) {
+  if (!choice.closed) return "it is open and encloses nothing: close it first, or use --fill shrinkwrap";
+  const std::string thin = "its parts are thinner than a voxel: raise --resolution";
+  return choice.doubled ? thin + "; or its faces lie back to back: use --fill shrinkwrap" : thin;
 }
 
 }  // namespace
@@ -114,9 +121,7 @@ Result<Solid> solid_in(const Model& model, const FillChoice& choice, const Voxel
   Result<voxel::Voxelized> made = voxel::voxelize(*surface, grid, fill, task.part(0.7));
   if (!made) return fail(made.error());
   if (made->volume.set_count() == 0) {
-    return fail(ErrorCode::empty, "no voxel lies inside the model", {},
-                choice.closed ? "its parts are thinner than a voxel: raise --resolution"
-                              : "it is open and encloses nothing: close it first, or use --fill shrinkwrap");
+    return fail(ErrorCode::empty, "no voxel lies inside the model", {}, way_out_of_nothing(choice));
   }
   Solid out;
   out.warnings = assumptions(choice, made->leaking_columns);

@@ -20,7 +20,8 @@ namespace lodestone::chain {
 struct FillChoice {
   voxel::FillRule fill = voxel::FillRule::parity;
   std::string reason;  ///< what was seen in the model, in plain words: "223 edges are open"
-  bool closed = true;  ///< no edge is open
+  bool closed = true;    ///< no edge is open
+  bool doubled = false;  ///< faces are listed twice
   bool asked = false;  ///< it was asked for by name
   double close = 0;    ///< shrinkwrap: the radius within which holes are closed, model units; 0 = two voxels
 };

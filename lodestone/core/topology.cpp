@@ -33,9 +33,14 @@ std::uint64_t count_duplicates(const Mesh& mesh, const Task& task) {
   return count;
 }
 
-// A sheet whose faces are all listed twice has no edge with one triangle, and is open all the same. What is left when
-// faces with the same vertices count once, and those that lie back to back not at all, tells.
-Mesh without_doubles(const Mesh& mesh, const Task& task) {
+// Faces with the same three vertices.
+struct SameFaces {
+  Triangle sorted;
+  std::uint32_t part = 0;
+  bool cancels = false;  // as many face one way as the other
+};
+
+std::vector<SameFaces> same_faces(const Mesh& mesh, const Parts& parts, const Task& task) {
   struct Face {
     Triangle sorted;
     std::uint32_t triangle;
@@ -54,13 +59,29 @@ Mesh without_doubles(const Mesh& mesh, const Task& task) {
   parallel_sort(faces, task, [](const Face& a, const Face& b) {
     return std::pair(a.sorted, a.triangle) < std::pair(b.sorted, b.triangle);
   });
-  Mesh out;
-  out.positions.resize(mesh.positions.size());
+  std::vector<SameFaces> out;
   for (std::size_t i = 0, end = 0; i < faces.size(); i = end) {
     std::int64_t balance = 0;
     for (end = i; end < faces.size() && faces[end].sorted == faces[i].sorted; ++end)
       balance += faces[end].turned ? -1 : 1;
-    if (balance != 0) out.triangles.push_back(faces[i].sorted);
+    out.push_back({faces[i].sorted, parts.of_vertex[faces[i].sorted[0]], balance == 0});
+  }
+  return out;
+}
+
+// A sheet whose faces are all listed twice has no edge with one triangle, and is open all the same. What is left when
+// faces with the same vertices count once, and those that lie back to back not at all (flaps on a closed surface), tells;
+// of a part that is nothing but faces back to back each counts once.
+Mesh without_doubles(const Mesh& mesh, const Parts& parts, const Task& task) {
+  const std::vector<SameFaces> faces = same_faces(mesh, parts, task);
+  std::vector<std::uint8_t> is_sheet(parts.count, 1);
+  for (const SameFaces& face : faces) {
+    if (!face.cancels) is_sheet[face.part] = 0;
+  }
+  Mesh out;
+  out.positions.resize(mesh.positions.size());
+  for (const SameFaces& face : faces) {
+    if (!face.cancels || is_sheet[face.part] != 0) out.triangles.push_back(face.sorted);
   }
   return out;
 }
@@ -143,14 +164,12 @@ Topology topology_of(const Mesh& mesh, const Task& task) {
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
     if (used[v] == 1 && !is_manifold_vertex(mesh, v, stars.of(v), ids, links)) ++out.nonmanifold_vertices;
   }
-  out.components = parts_of(mesh).count;
-  bool all_cancel = false;
+  const Parts parts = parts_of(mesh);
+  out.components = parts.count;
   if (out.duplicate_faces > 0) {
-    const Mesh single = without_doubles(mesh, task);
-    all_cancel = single.triangles.empty();
-    out.hidden_boundary_edges = count_boundary_edges(single, task);
+    out.hidden_boundary_edges = count_boundary_edges(without_doubles(mesh, parts, task), task);
   }
-  out.closed = out.edges > 0 && out.boundary_edges == 0 && out.hidden_boundary_edges == 0 && !all_cancel;
+  out.closed = out.edges > 0 && out.boundary_edges == 0 && out.hidden_boundary_edges == 0;
   out.manifold = out.edges > 0 && out.nonmanifold_edges == 0 && out.nonmanifold_vertices == 0;
   return out;
 }

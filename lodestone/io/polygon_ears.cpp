@@ -83,7 +83,11 @@ void EarClipper::offer(std::uint32_t corner) {
   std::push_heap(heap_.begin(), heap_.end());
 }
 
+// A walk around the ring counts as so many steps; without steps left any corner that is not blunt passes for an ear.
+void EarClipper::charge_ring() { budget_ -= std::min<std::uint64_t>(budget_, left_); }
+
 void EarClipper::offer_all() {
+  charge_ring();
   for_ring([&](std::uint32_t corner) { offer(corner); });
 }
 
@@ -121,6 +125,7 @@ void EarClipper::clip_corner(std::uint32_t corner, PolygonTriangles& out) {
 
 // One corner that is no ear. False: there is none with an area, and the rest is done.
 bool EarClipper::force(PolygonTriangles& out) {
+  charge_ring();
   Candidate best{std::numeric_limits<double>::infinity(), 0, 0};
   bool found = false;
   for_ring([&](std::uint32_t corner) {

@@ -72,6 +72,7 @@ class EarClipper {
   void mark_all();
   void offer(std::uint32_t corner);
   void offer_all();
+  void charge_ring();
   bool is_ear(std::uint32_t corner);
   void clip_corner(std::uint32_t corner, PolygonTriangles& out);
   bool force(PolygonTriangles& out);

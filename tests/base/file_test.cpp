@@ -90,6 +90,18 @@ TEST_F(File, a_write_protected_file_is_refused) {
   EXPECT_EQ(entries(), 2U);
 }
 
+TEST_F(File, a_replaced_file_keeps_its_permissions) {
+  const fs::perms only_mine = fs::perms::owner_read | fs::perms::owner_write;
+  std::ofstream(folder_ / "a.bin") << "old";
+  fs::permissions(folder_ / "a.bin", only_mine);
+  auto out = OutputFile::create(folder_ / "a.bin");
+  ASSERT_TRUE(out) << out.error().line();
+  out->write("new");
+  ASSERT_TRUE(out->commit());
+  EXPECT_EQ(*read_file(folder_ / "a.bin"), "new");
+  EXPECT_EQ(fs::status(folder_ / "a.bin").permissions(), only_mine);
+}
+
 TEST_F(File, a_symbolic_link_stays_and_its_target_gets_the_bytes) {
   fs::create_directories(folder_ / "far");
   std::ofstream(folder_ / "far" / "a.bin") << "old";
@@ -199,6 +211,18 @@ TEST_F(Staging, links_stay_and_lead_to_the_new_bytes) {
   for (const char* name : {"b", "d"}) EXPECT_TRUE(fs::is_symlink(folder_ / name));
   EXPECT_EQ(std::distance(fs::directory_iterator(far), fs::directory_iterator()), 2);
   EXPECT_EQ(entries(), 5U);
+}
+
+TEST_F(Staging, replaced_files_keep_their_permissions) {
+  const fs::perms only_mine = fs::perms::owner_read | fs::perms::owner_write;
+  put(folder_ / "b", "old b");
+  fs::permissions(folder_ / "b", only_mine);
+  {
+    StagingFolder staging = staged();
+    ASSERT_TRUE(staging.commit());
+  }
+  EXPECT_EQ(*read_file(folder_ / "b"), "new b");
+  EXPECT_EQ(fs::status(folder_ / "b").permissions(), only_mine);
 }
 
 TEST_F(Staging, one_write_protected_file_changes_none) {

@@ -19,8 +19,10 @@ TEST(ErrorCurve, is_twice_what_the_levels_before_lead_one_to_expect) {
   EXPECT_DOUBLE_EQ(most_in_line({{2'000'000, 0.008}, {1'000'000, 0.01}}, 500'000, 1, false), 0.04);
   EXPECT_NEAR(most_in_line({{2'000'000, 0.003}, {1'000'000, 0.01}}, 250'000, 1, false), 0.16, 1e-12)
       << "a steep curve is followed";
-  EXPECT_DOUBLE_EQ(most_in_line({{1'000'000, 1e-9}}, 100, 1, false), 0.08) << "so few triangles can't do better";
-  EXPECT_DOUBLE_EQ(most_in_line({{1'000'000, 1e-9}}, 100, 1, true), 0.32) << "nor can so few parts";
+  EXPECT_DOUBLE_EQ(most_in_line({{1000, 1e-4}}, 100, 1, false), 0.08) << "so few triangles can't do better";
+  EXPECT_DOUBLE_EQ(most_in_line({{1000, 1e-4}}, 100, 1, true), 0.32) << "nor can so few parts";
+  EXPECT_TRUE(std::isinf(most_in_line({{1'000'000, 1e-6}}, 100'000, 1, false))) << "flat parts tell nothing of the rest";
+  EXPECT_DOUBLE_EQ(most_in_line({{1'000'000, 2e-4}, {900'000, 1e-6}}, 1'000'000, 1, false), 1e-3) << "is no ruin";
 }
 
 // A ball, half of whose triangles sit in many small tetrahedra that no collapse can shrink, so that what is left of it
@@ -66,6 +68,28 @@ TEST(BuildLadder, ends_before_errors_jump_unless_forced) {
   ASSERT_EQ(kept->shortfalls.size(), 1U);
   EXPECT_EQ(kept->shortfalls[0].level, 3U);
   EXPECT_NE(kept->shortfalls[0].reason.find("errors jump"), std::string::npos) << kept->shortfalls[0].reason;
+}
+
+// A plate, finely meshed, with ten by ten bumps: at first only flat triangles go, which costs nothing; then the bumps
+// begin to be coarser, as they should.
+Mesh plate_with_bumps() {
+  constexpr int n = 160;
+  Mesh plate = test::grid(n, 1.0F / n);
+  for (Vec3f& p : plate.positions) {
+    const float x = 10 * p.x - std::floor(10 * p.x) - 0.5F, y = 10 * p.y - std::floor(10 * p.y) - 0.5F;
+    p.z = 0.03F * std::max(0.0F, 1 - (x * x + y * y) / (0.35F * 0.35F));
+  }
+  return plate;
+}
+
+TEST(BuildLadder, goes_on_when_flat_parts_are_used_up) {
+  const auto r = build_ladder(make_model(plate_with_bumps()), with_ratios({0.7, 0.4, 0.1, 0.05}));
+  ASSERT_TRUE(r);
+  EXPECT_TRUE(r->shortfalls.empty()) << r->shortfalls[0].reason;
+  ASSERT_EQ(r->ladder.levels.size(), 5U);
+  const auto& first = r->ladder.levels[1];
+  EXPECT_LT(first.error.measured_error, 1e-4 * first.error.diagonal) << "flat parts cost nothing";
+  EXPECT_GT(r->ladder.levels[2].error.measured_error, 3 * first.error.measured_error);
 }
 
 TEST(SimplifyModel, stops_before_errors_jump_where_a_count_cannot_be_reached) {

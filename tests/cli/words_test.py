@@ -59,7 +59,8 @@ class Words(Scratch):
     def test_a_missing_file_is_told_in_one_text_by_all_verbs(self):
         for verb in (("build", "-o", "x.glb"), ("simplify", "-o", "x.ply", "--ratio", "10%"), ("remesh", "-o", "x.ply"),
                      ("voxelize", "-o", "x.ply"), ("render", "-o", "x.png"), ("render", "--sheet", "-o", "x.png"),
-                     ("render", "--level", "1", "-o", "x.png"), ("info",), ("convert", "-o", "x.glb"), ("info", "--iso", "3")):
+                     ("render", "--level", "1", "-o", "x.png"), ("info",), ("convert", "-o", "x.glb"), ("convert", "-o", "x_{level}.obj"),
+                     ("info", "--iso", "3")):
             for name in ("no.ply", "no.glb", "no.fbx", "no.las", "no.nrrd", "no"):
                 with self.subTest((verb, name)):
                     self.assertEqual(self.refused(verb[0], name, *verb[1:], code=1),

@@ -47,7 +47,7 @@ TEST(Topology, doubled_faces_close_no_sheet) {
     EXPECT_FALSE(sheet.closed);
   }
   EXPECT_EQ(listed_again(test::grid(3), false).hidden_boundary_edges, 12U);
-  EXPECT_TRUE(listed_again(test::torus(8), false).closed);
+  for (const bool turned : {false, true}) EXPECT_TRUE(listed_again(test::torus(8), turned).closed);
   Mesh flap = test::torus(8);  // a face and its back on an edge of a closed surface
   flap.positions.push_back({9, 9, 9});
   const auto tip = static_cast<std::uint32_t>(flap.positions.size() - 1);
@@ -55,6 +55,21 @@ TEST(Topology, doubled_faces_close_no_sheet) {
   flap.triangles.push_back({t[0], t[1], tip});
   flap.triangles.push_back({t[0], tip, t[1]});
   EXPECT_TRUE(topology_of(flap).closed);
+}
+
+TEST(Topology, a_doubled_sheet_is_open_beside_what_is_closed) {
+  Mesh both = test::torus(8);
+  const Mesh sheet = test::grid(3);
+  const auto first = static_cast<std::uint32_t>(both.positions.size());
+  for (const Vec3f& p : sheet.positions) both.positions.push_back({p.x + 9, p.y, p.z});
+  for (const Triangle& t : sheet.triangles) {
+    both.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    both.triangles.push_back({first + t[0], first + t[2], first + t[1]});
+  }
+  const Topology t = topology_of(both);
+  EXPECT_FALSE(t.closed);
+  EXPECT_EQ(t.boundary_edges, 0U);
+  EXPECT_EQ(t.hidden_boundary_edges, 12U);
 }
 
 TEST(Topology, a_fan_of_many_triangles_takes_bounded_time) {

@@ -157,9 +157,19 @@ TEST(Polygon, triangles_are_constrained_delaunay) {
   }
 }
 
+// Three laps, the inner one last, beside a square that they lie in: no corner is an ear for long.
+Corners laps(std::size_t n) {
+  Corners p{{-100, -100, 0}, {100, -100, 0}, {100, 100, 0}, {-100, 100, 0}, {-30, 0, 0}};
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = double(i) / double(n), a = 3.09 - 18.85 * t, r = 5 - 3 * t;
+    p.push_back({r * std::cos(a), r * std::sin(a), 0});
+  }
+  return p;
+}
+
 TEST(Polygon, crossing_ones_still_give_a_result) {
   const std::pair<const char*, Corners> shapes[] = {
-      {"eight", figure_of_eight(4000)}, {"tangle", tangle(1500)}, {"one place", Corners(7, Vec3d{1, 2, 3})}};
+      {"eight", figure_of_eight(4000)}, {"tangle", tangle(1500)}, {"laps", laps(300'000)}, {"one place", Corners(7, Vec3d{1, 2, 3})}};
   for (const auto& [name, corners] : shapes) {
     const Cut got = cut(corners);
     expect_whole(corners, got, name);
