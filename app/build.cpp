@@ -66,7 +66,7 @@ Result<Model> read_job(const BuildJob& job, const BuildPlan& plan, BuildReport& 
 Result<chain::LadderOptions> prepare_job(const BuildPlan& plan, Model& model, BuildReport& report,
                                          std::vector<std::string>& warnings, const Console& console, const Task& task) {
   std::vector<std::string> notes;
-  Result<chain::LadderOptions> options = ladder_options(plan, model, notes, warnings);
+  Result<chain::LadderOptions> options = ladder_options(plan, model, notes, warnings, task);
   if (!options) return options;
   if (plan.image_error || plan.report) {
     const Result<void> decoded = io::decode_base_colors(model, warnings, task);

@@ -100,12 +100,12 @@ std::size_t smallest_level(const BuildPlan& plan, const Model& model) {
 }  // namespace
 
 Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& model, std::vector<std::string>& notes,
-                                            std::vector<std::string>& warnings) {
+                                            std::vector<std::string>& warnings, const Task& task) {
   chain::LadderOptions options;
   if (plan.levels > 0) options.levels = plan.levels;
   options.ratios = plan.ratios;
   options.triangles = plan.triangles;
-  Result<chain::Influence> influence = plan.influence.for_model(model, smallest_level(plan, model), warnings);
+  Result<chain::Influence> influence = plan.influence.for_model(model, smallest_level(plan, model), warnings, task);
   if (!influence) return fail(influence.error());
   options.influence = std::move(*influence);
   options.effort = plan.voxel ? chain::Effort::fast : plan.effort;

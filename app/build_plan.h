@@ -45,7 +45,7 @@ std::size_t planned_levels(const BuildPlan& plan);
 /// The options for one model. `notes` gets what a user should know, such as "keeping 10 %"; `warnings` what does not
 /// fit the model.
 Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& model, std::vector<std::string>& notes,
-                                            std::vector<std::string>& warnings);
+                                            std::vector<std::string>& warnings, const Task& task);
 
 struct BuildJob {
   std::filesystem::path input, output;

@@ -246,8 +246,8 @@ namespace {
 
 // A tree or a lattice needs parts that vanish while others grow, or its levels are ruins.
 void choose_keep_area(const Model& model, std::size_t smallest, chain::Influence& influence,
-                      std::vector<std::string>& warnings) {
-  const chain::ThinShare share = chain::thin_share(model);
+                      std::vector<std::string>& warnings, const Task& task) {
+  const chain::ThinShare share = chain::thin_share(model, task);
   if (!chain::needs_keep_area(share, smallest)) return;
   influence.keep_area = true;
   warnings.push_back(
@@ -259,9 +259,12 @@ void choose_keep_area(const Model& model, std::size_t smallest, chain::Influence
 }  // namespace
 
 Result<chain::Influence> InfluencePlan::for_model(const Model& model, std::size_t smallest,
-                                                  std::vector<std::string>& warnings) const {
+                                                  std::vector<std::string>& warnings, const Task& task) const {
   chain::Influence out = influence;
-  if (!keep_parts && !influence.vanishes() && influence.only.empty()) choose_keep_area(model, smallest, out, warnings);
+  if (!keep_parts && !influence.vanishes() && influence.only.empty()) {
+    choose_keep_area(model, smallest, out, warnings, task);
+    if (task.cancelled()) return cancelled_error("looking for thin parts");
+  }
   for (const std::size_t sphere : chain::empty_spheres(model, influence.spheres)) {
     warnings.push_back(fmt::format("{}: this sphere holds no vertex", sphere_places[sphere]));
   }

@@ -27,9 +27,9 @@ struct InfluencePlan {
   /// With lengths in the model's units, for levels of down to `smallest` triangles (0 = as few as may be). Where the
   /// model is made of thin parts, and nothing was asked, parts may vanish and others grow. `warnings` gets that, and
   /// spheres that hold no vertex. Errors: bad_argument (a unit, and the model has none), bad_format (a triangle that
-  /// the model has not).
-  Result<chain::Influence> for_model(const Model& model, std::size_t smallest,
-                                     std::vector<std::string>& warnings) const;
+  /// the model has not), cancelled.
+  Result<chain::Influence> for_model(const Model& model, std::size_t smallest, std::vector<std::string>& warnings,
+                                     const Task& task) const;
 };
 
 /// Reads the options, and the files of --weights and --only. Errors: bad_argument, cannot_read, bad_format (with the

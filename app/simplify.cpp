@@ -85,7 +85,8 @@ Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const 
     options.target_triangles =
         std::max<std::size_t>(1, static_cast<std::size_t>(plan.ratio[0] * static_cast<double>(triangles) + 0.5));
   }
-  Result<chain::Influence> influence = plan.influence.for_model(model, options.target_triangles, warnings);
+  Result<chain::Influence> influence =
+      plan.influence.for_model(model, options.target_triangles, warnings, console.task());
   if (!influence) return fail(influence.error());
   options.influence = std::move(*influence);
   if (!plan.ratio.empty()) {

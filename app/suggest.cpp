@@ -72,7 +72,6 @@ constexpr Synonym kSynonyms[] = {
     {"--target", "--triangles"},
     {"--percent", "--ratio"},
     {"--keep", "--ratio"},
-    {"--reduction", "--ratio"},
     {"--tolerance", "--error"},
     {"--deviation", "--error"},
     {"--epsilon", "--error"},

@@ -19,11 +19,11 @@ namespace lodestone::chain {
 /// The rule that fills a model, and why.
 struct FillChoice {
   voxel::FillRule fill = voxel::FillRule::parity;
-  std::string reason;  ///< what was seen in the model, in plain words: "223 edges are open"
+  std::string reason;    ///< what was seen in the model, in plain words: "223 edges are open"
   bool closed = true;    ///< no edge is open
   bool doubled = false;  ///< faces are listed twice
-  bool asked = false;  ///< it was asked for by name
-  double close = 0;    ///< shrinkwrap: the radius within which holes are closed, model units; 0 = two voxels
+  bool asked = false;    ///< it was asked for by name
+  double close = 0;      ///< shrinkwrap: the radius within which holes are closed, model units; 0 = two voxels
 };
 
 /// The rule for a surface of this connectivity: closed surfaces get parity; closed pieces that all face one way, of

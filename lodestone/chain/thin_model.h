@@ -15,7 +15,7 @@ struct ThinShare {
 
 /// A part is thin when it is at most a twentieth of the model's diagonal across in two directions, be it long in the
 /// third (a strut, a wire) or not (a leaf): four times the standard deviation of its vertices along the middle one of
-/// its principal axes. World space. O(model).
+/// its principal axes. World space. O(what is drawn).
 ThinShare thin_share(const Model& model, const Task& task = {});
 
 /// Whether a level of so many triangles needs parts that vanish while others grow (Influence::keep_area): most of the

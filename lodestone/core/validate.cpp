@@ -200,7 +200,8 @@ Result<void> validate(const Ladder& ladder, const Task& task) {
 }
 
 Result<void> validate(const Pixels& pixels) {
-  if (pixels.rgba.size() == std::size_t{4} * pixels.width * pixels.height) return {};
+  const std::size_t count = std::size_t{pixels.width} * pixels.height;  // four times that might not fit
+  if (pixels.rgba.size() % 4 == 0 && pixels.rgba.size() / 4 == count) return {};
   return bad({}, "picture of {} x {} pixels has {} bytes", pixels.width, pixels.height, pixels.rgba.size());
 }
 
@@ -273,7 +274,9 @@ Result<void> validate(const CollapseLog& log, const Mesh& mesh, const Task& task
   const auto& collapses = log.collapses;
   const auto is_bad = [&](std::size_t i) {
     const Collapse& c = collapses[i];
-    return std::max(c.kept, c.removed) >= vertices || c.first_wedge > log.wedges.size() || is_infinite(c.position);
+    const std::size_t last = i + 1 < collapses.size() ? collapses[i + 1].first_wedge : log.wedges.size();
+    return std::max(c.kept, c.removed) >= vertices || c.first_wedge > last || last > log.wedges.size() ||
+           is_infinite(c.position);
   };
   if (const std::size_t i = first_bad(collapses.size(), task, is_bad); i < collapses.size()) {
     const Collapse& c = collapses[i];
@@ -283,6 +286,10 @@ Result<void> validate(const CollapseLog& log, const Mesh& mesh, const Task& task
   const auto names_other = [&](std::size_t i) { return std::max(log.wedges[i].kept, log.wedges[i].removed) >= wedges; };
   if (const std::size_t i = first_bad(log.wedges.size(), task, names_other); i < log.wedges.size()) {
     return bad(where, "merge {} names wedge {} of {}", i, std::max(log.wedges[i].kept, log.wedges[i].removed), wedges);
+  }
+  const auto blends_wrongly = [&](std::size_t i) { return !(log.wedges[i].blend >= 0 && log.wedges[i].blend <= 1); };
+  if (const std::size_t i = first_bad(log.wedges.size(), task, blends_wrongly); i < log.wedges.size()) {
+    return bad(where, "merge {} blends by {}, which is not from 0 to 1", i, log.wedges[i].blend);
   }
   for (const std::uint32_t t : log.dropped) {
     if (t >= triangles) return bad(where, "it leaves out triangle {} of {}", t, triangles);

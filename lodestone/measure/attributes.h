@@ -7,9 +7,8 @@
 //   UV       d_t = sqrt((u1 - u2)^2 + (v1 - v2)^2), as stored, origin at the image's top
 //   colour   d_c = sqrt((r1 - r2)^2 + (g1 - g2)^2 + (b1 - b2)^2), channels in [0, 1], so white to black is sqrt(3)
 //   look     d_c of the colours on the screen: base colour factor x texture x vertex colour, multiplied as light,
-//   compared
-//            in sRGB. Texture: UVs after KHR_texture_transform, bilinear, repeating, in full resolution. Without
-//            lights, alpha and other textures.
+//            compared in sRGB. Texture: UVs after KHR_texture_transform, bilinear, repeating, in full resolution.
+//            Without lights, alpha and other textures.
 //
 // Samples are those of distance.h: area-weighted, stratified, world space, bind pose, the same for the same seed; both
 // ways. Values within a triangle are interpolated between its corners.

@@ -1,10 +1,10 @@
-// Method   branch and bound over the triangles of the first surface. A triangle over which the other surface lies like
-// a
-//          graph is bounded at once (graph_bound.cpp). Else by pieces: the distance to one triangle is a convex
-//          function, so over a polygon it is largest at a corner. A piece whose corners have the same closest triangle
-//          is bounded by its corners, one whose corners have two or three is cut where those are equally far, and each
-//          part is bounded by its own. A piece whose bound stays too high is halved at its longest side.
-// Cost     O(triangles) plus one closest-point query a halving; most triangles need none
+// Branch and bound over the triangles of the first surface.
+//
+// A triangle over which the other surface lies like a graph is bounded at once (graph_bound.cpp). Else it goes by pieces:
+// the distance to one triangle is a convex function, so over a polygon it is largest at a corner. A piece whose corners
+// have the same closest triangle is bounded by its corners; one whose corners have two or three is cut where those are
+// equally far, and each part is bounded by its own. A piece whose bound stays too high is halved at its longest side.
+// O(triangles), plus one closest-point query a halving; most triangles need none.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,7 +1,13 @@
-// Method   greedy edge collapse in passes: memoryless quadrics, volume-preserving placement, the cheapest edges of a
-// pass in order Source   Lindstrom & Turk 1998 (placement and cost), Garland & Heckbert 1997 (quadrics), Dey et al.
-// 1999 (link condition) Cost     O(n log n) time: each pass is linear and removes a fixed share of what is left Steps
-// working mesh -> { stars, quadrics, candidates, sort, sweep, compact } until a target -> record -> replay
+// Collapses edges, cheap ones first, until so many triangles are left or the next would err too much.
+//
+// Costs are those of Lindstrom & Turk 1998: memoryless, so quadrics (Garland & Heckbert 1997) are made from the triangles
+// as they are now, and a new vertex lies where the volume stays as it is. Legal is a collapse that keeps the surface's
+// topology (the link condition, Dey et al. 1999) and turns no triangle over.
+//
+// There is no queue that follows every change. It goes in passes: stars and quadrics of all vertices, the cost of every
+// edge that may go, the cheapest share of them in order of cost; each is collapsed if nothing near it has changed in
+// this pass; then what is gone is cleared away. A pass is linear and removes a fixed share of what is left: O(n log n)
+// in all. What was done is recorded, and the record makes any level (collapse_log.h).
 #include "lodestone/simplify/edge_collapse.h"
 #include "lodestone/base/memory.h"
 

@@ -40,77 +40,79 @@ struct Visit {
   std::uint32_t level, index;
 };
 
-}  // namespace
+// Rounding to float and subtracting in float can move a box's side by a few units of the largest coordinate's last place.
+constexpr Vec3f kMargin{0x1p-21F, 0x1p-21F, 0x1p-21F};
 
-Bvh::Bvh(const Surface& surface, const Task& task) : surface_(surface), center_(surface.bounds.center()) {
-  const std::vector<detail::Piece> pieces = detail::thin_pieces(surface, task);
-  leaf_triangle_.reserve(pieces.size());
-  for (const detail::Piece& piece : pieces) leaf_triangle_.push_back(piece.triangle);
-  const std::size_t leaves = pieces.empty() ? surface.triangles.size() : pieces.size();
-  std::size_t count = leaves;
+// Of children that are none: far away, so that no query goes there; infinities would make NaN.
+constexpr Vec3f kNowhere{1e19F, 1e19F, 1e19F};
+
+// Nodes of each level, from that above the leaves to the root.
+std::vector<std::size_t> level_sizes(std::size_t leaves) {
   std::vector<std::size_t> sizes;
+  std::size_t count = leaves;
   do {
     count = (count + 3) / 4;
     sizes.push_back(count);
   } while (count > 1);
-  level_first_.push_back(0);
-  for (const std::size_t size : sizes) level_first_.push_back(level_first_.back() + static_cast<std::uint32_t>(size));
-  nodes_.resize(level_first_.back());
+  return sizes;
+}
+
+}  // namespace
+
+Bvh::Bvh(const Surface& surface, const Task& task) : surface_(surface), center_(surface.bounds.center()) {
   const Vec3d half = surface.bounds.size() * 0.5;
   const double extent = std::max({half.x, half.y, half.z});
   scale_ = extent > 0 ? 1 / extent : 1;
-  // Rounding to float and subtracting in float can move a box's side by a few units of the largest coordinate's last
-  // place.
-  constexpr float margin = 0x1p-21F;
-  const auto set = [](Node& node, std::size_t slot, const Box3f& box) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      node.min[k][slot] = box.min[k];
-      node.max[k][slot] = box.max[k];
+  const std::vector<detail::Piece> pieces = detail::thin_pieces(surface, task);
+  leaf_triangle_.reserve(pieces.size());
+  for (const detail::Piece& piece : pieces) leaf_triangle_.push_back(piece.triangle);
+  const std::size_t leaves = pieces.empty() ? surface.triangles.size() : pieces.size();
+  const std::vector<std::size_t> sizes = level_sizes(leaves);
+  level_first_.push_back(0);
+  for (const std::size_t size : sizes) level_first_.push_back(level_first_.back() + static_cast<std::uint32_t>(size));
+  nodes_.resize(level_first_.back());
+  fill_level(0, leaves, task, [&](std::size_t leaf) {
+    Box3f box;
+    const auto add = [&](Vec3d c) { box.add(to_float((c - center_) * scale_)); };
+    if (pieces.empty()) {
+      for (const Vec3d c : surface.corners(leaf)) add(c);
+    } else {
+      add(pieces[leaf].box.min);
+      add(pieces[leaf].box.max);
     }
-  };
-  Box3f nowhere;  // far away, so that no query goes there; infinities would make NaN
-  nowhere.min = nowhere.max = {1e19F, 1e19F, 1e19F};
-  parallel_for(sizes[0], kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    box.min -= kMargin;
+    box.max += kMargin;
+    return box;
+  });
+  for (std::size_t level = 1; level < sizes.size(); ++level) {
+    fill_level(level, sizes[level - 1], task, [&](std::size_t child) {
+      const Node& c = nodes_[level_first_[level - 1] + child];
+      Box3f box;
+      for (std::size_t s = 0; s < 4; ++s) {
+        if (c.min[0][s] == kNowhere.x) continue;
+        box.add(Vec3f{c.min[0][s], c.min[1][s], c.min[2][s]});
+        box.add(Vec3f{c.max[0][s], c.max[1][s], c.max[2][s]});
+      }
+      return box;
+    });
+  }
+}
+
+template <class BoxOf>
+void Bvh::fill_level(std::size_t level, std::size_t children, const Task& task, BoxOf box_of) {
+  const std::size_t first = level_first_[level], size = level_first_[level + 1] - first;
+  parallel_for(size, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t n = begin; n < end; ++n) {
       for (std::size_t slot = 0; slot < 4; ++slot) {
-        const std::size_t leaf = n * 4 + slot;
-        Box3f box = nowhere;
-        if (leaf < leaves) {
-          box = Box3f{};
-          const auto add = [&](Vec3d c) { box.add(to_float((c - center_) * scale_)); };
-          if (pieces.empty()) {
-            for (const Vec3d c : surface.corners(leaf)) add(c);
-          } else {
-            add(pieces[leaf].box.min);
-            add(pieces[leaf].box.max);
-          }
-          box.min -= {margin, margin, margin};
-          box.max += {margin, margin, margin};
+        const std::size_t child = n * 4 + slot;
+        const Box3f box = child < children ? box_of(child) : Box3f{kNowhere, kNowhere};
+        for (std::size_t k = 0; k < 3; ++k) {
+          nodes_[first + n].min[k][slot] = box.min[k];
+          nodes_[first + n].max[k][slot] = box.max[k];
         }
-        set(nodes_[n], slot, box);
       }
     }
   });
-  for (std::size_t level = 1; level < sizes.size(); ++level) {
-    parallel_for(sizes[level], kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
-      for (std::size_t n = begin; n < end; ++n) {
-        for (std::size_t slot = 0; slot < 4; ++slot) {
-          const std::size_t child = n * 4 + slot;
-          Box3f box = nowhere;
-          if (child < sizes[level - 1]) {
-            const Node& c = nodes_[level_first_[level - 1] + child];
-            box = Box3f{};
-            for (std::size_t s = 0; s < 4; ++s) {
-              if (c.min[0][s] == nowhere.min.x) continue;
-              box.add(Vec3f{c.min[0][s], c.min[1][s], c.min[2][s]});
-              box.add(Vec3f{c.max[0][s], c.max[1][s], c.max[2][s]});
-            }
-          }
-          set(nodes_[level_first_[level] + n], slot, box);
-        }
-      }
-    });
-  }
 }
 
 Nearest Bvh::test(Vec3d p, std::uint32_t triangle) const {

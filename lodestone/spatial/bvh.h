@@ -19,8 +19,8 @@ struct Nearest {
 
 /// A packed tree: four children a node, the surface's Hilbert order cut into fours level by level, so nothing needs a
 /// pointer. Boxes are floats rounded outward, triangles are tested in double: the answer is exact in double precision.
-/// Where many triangles are long and thin each of these has several boxes (thin_pieces_detail.h). Build O(n), memory
-/// about 32 bytes a triangle. The surface must outlive the tree.
+/// Build O(n), memory about 32 bytes a triangle. Where many triangles are long and thin, each of these has several boxes
+/// (thin_pieces_detail.h): O(n log n), and up to five times the memory and 36 MB. The surface must outlive the tree.
 class Bvh {
  public:
   explicit Bvh(const Surface& surface, const Task& task = {});
@@ -50,6 +50,9 @@ class Bvh {
   };
   Nearest test(Vec3d p, std::uint32_t triangle) const;
   std::uint32_t triangle_of(std::uint32_t leaf) const { return leaf_triangle_.empty() ? leaf : leaf_triangle_[leaf]; }
+  // box_of(child) for each child of this level's nodes; the nodes of the level below are filled.
+  template <class BoxOf>
+  void fill_level(std::size_t level, std::size_t children, const Task& task, BoxOf box_of);
   // Visits triangles, near ones first, and calls take(triangle) for each whose box is within limit_sq, which it may
   // lower.
   template <class Take>

@@ -1,6 +1,7 @@
-// Steps    { border vertices -> mutual nearest -> pairs that keep edges manifold, the nearest first -> { drop those
-// that
-//          turn a triangle or share no sewn edge } until none does -> rename } until there is no pair -> move
+// Sews borders that were meant to meet. Border vertices that are each other's nearest make pairs; a pair is taken, the
+// nearest first, if edges stay manifold with it. Pairs that turn a triangle over or share no sewn edge with another are
+// dropped until there is none, what is left is renamed, and the search begins anew until it finds no pair. Then the
+// vertices move together.
 #include "lodestone/spatial/join.h"
 
 #include <algorithm>

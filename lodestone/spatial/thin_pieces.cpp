@@ -12,8 +12,9 @@ namespace lodestone::spatial::detail {
 namespace {
 
 constexpr std::size_t kChunk = 4096;
-constexpr double kEmpty = 16;                                // box to triangle: half the box's surface by the area
-constexpr double kMostPieces = 256;                          // of a triangle
+constexpr double kEmpty = 16;                                  // box to triangle: half the box's surface by the area
+constexpr double kMostPieces = 256;                            // of a triangle
+constexpr std::size_t kMostLeaves = std::size_t{1} << 30;      // the tree counts them in 32 bits
 constexpr std::size_t kMoreBoxes = 4, kFreeBoxes = 1'000'000;  // of all thin triangles: for each triangle, and beside
 
 double half_surface(Vec3d size) { return size.x * size.y + size.y * size.z + size.z * size.x; }
@@ -30,13 +31,17 @@ struct Long {
   bool is_thin() const { return box > kEmpty * area; }
 };
 
+Box3d box_of(const Long& t) {
+  Box3d box;
+  for (const Vec3d p : {t.from, t.to, t.apex}) box.add(p);
+  return box;
+}
+
 Long long_way(const Surface& surface, std::size_t t) {
   const auto [a, b, c] = surface.corners(t);
   const double ab = length(b - a), bc = length(c - b), ca = length(a - c);
   Long out = ab >= bc && ab >= ca ? Long{a, b, c, ab} : bc >= ca ? Long{b, c, a, bc} : Long{c, a, b, ca};
-  Box3d box;
-  for (const Vec3d p : {a, b, c}) box.add(p);
-  out.box = half_surface(box.size());
+  out.box = half_surface(box_of(out).size());
   out.area = 0.5 * length(scaled_normal(a, b, c));
   return out;
 }
@@ -61,7 +66,7 @@ Fill fill_of(const Surface& surface, const Task& task) {
 
 // As many as the step gives, and no more than it takes until boxes are full enough.
 std::uint32_t cuts_of(const Long& t, double step) {
-  if (!(t.length > 0)) return 1;
+  if (!t.is_thin() || !(t.length > 0)) return 1;
   const double full = t.area > 0 ? t.box / (kEmpty * t.area) : kMostPieces;
   return static_cast<std::uint32_t>(std::clamp(std::min(t.length / step, full) + 0.5, 1.0, kMostPieces));
 }
@@ -83,25 +88,29 @@ Box3d slice(const Long& t, double begin, double end) {
   return box;
 }
 
-void order(const Surface& surface, std::vector<Piece>& pieces, const Task& task) {
+// In the order of a Hilbert curve.
+std::vector<Piece> ordered(const Surface& surface, const std::vector<Piece>& pieces, const Task& task) {
   struct Key {
     std::uint64_t code;
-    std::uint32_t piece;
+    std::size_t piece;
   };
   const Vec3d size = surface.bounds.size(), low = surface.bounds.min;
   const double longest = std::max({size.x, size.y, size.z});
   const double cells = longest > 0 ? 65535.0 / longest : 0;
+  const auto cell = [](double x) { return static_cast<std::uint32_t>(x > 0 ? std::min(x, 65535.0) : 0.0); };
   std::vector<Key> keys(pieces.size());
-  for (std::uint32_t i = 0; i < pieces.size(); ++i) {
-    const Vec3d p = (pieces[i].box.center() - low) * cells;
-    const auto cell = [](double x) { return static_cast<std::uint32_t>(x > 0 ? std::min(x, 65535.0) : 0.0); };
-    keys[i] = {hilbert_key(cell(p.x), cell(p.y), cell(p.z)), i};
-  }
+  parallel_for(pieces.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3d p = (pieces[i].box.center() - low) * cells;
+      keys[i] = {hilbert_key(cell(p.x), cell(p.y), cell(p.z)), i};
+    }
+  });
   parallel_sort(keys, task, [](const Key& a, const Key& b) { return a.code < b.code; });
-  std::vector<Piece> sorted;
-  sorted.reserve(pieces.size());
-  for (const Key& key : keys) sorted.push_back(pieces[key.piece]);
-  pieces = std::move(sorted);
+  std::vector<Piece> sorted(pieces.size());
+  parallel_for(pieces.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) sorted[i] = pieces[keys[i].piece];
+  });
+  return sorted;
 }
 
 }  // namespace
@@ -112,23 +121,27 @@ std::vector<Piece> thin_pieces(const Surface& surface, const Task& task) {
   if (!(fill.boxes > kEmpty * fill.areas) || !std::isfinite(fill.boxes) || !(fill.thin_length > 0)) return {};
   // A sliver of length L in k pieces has boxes of L²/k: for a number of pieces their sum is least where k grows with L.
   const double step = fill.thin_length / static_cast<double>(kMoreBoxes * count + kFreeBoxes);
-  std::vector<Piece> pieces;
-  for (std::size_t t = 0; t < count; ++t) {
-    const Long one = long_way(surface, t);
-    const std::uint32_t cuts = one.is_thin() ? cuts_of(one, step) : 1;
-    const auto triangle = static_cast<std::uint32_t>(t);
-    if (cuts == 1) {
-      Box3d box;
-      for (const Vec3d p : {one.from, one.to, one.apex}) box.add(p);
-      pieces.push_back({box, triangle});
-      continue;
+  // Pieces are counted first, so that all chunks can make theirs at once.
+  std::vector<std::size_t> first(count + 1, 0);
+  parallel_for(count, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t t = begin; t < end; ++t) first[t + 1] = cuts_of(long_way(surface, t), step);
+  });
+  if (task.cancelled()) return {};
+  for (std::size_t t = 0; t < count; ++t) first[t + 1] += first[t];
+  if (first[count] > kMostLeaves) return {};
+  std::vector<Piece> pieces(first[count]);
+  parallel_for(count, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const Long one = long_way(surface, t);
+      const std::size_t cuts = first[t + 1] - first[t];
+      for (std::size_t k = 0; k < cuts; ++k) {
+        const double from = double(k) / double(cuts), to = double(k + 1) / double(cuts);
+        pieces[first[t] + k] = {cuts == 1 ? box_of(one) : slice(one, from, to), static_cast<std::uint32_t>(t)};
+      }
     }
-    for (std::uint32_t k = 0; k < cuts; ++k) {
-      pieces.push_back({slice(one, double(k) / cuts, double(k + 1) / cuts), triangle});
-    }
-  }
-  order(surface, pieces, task);
-  return pieces;
+  });
+  if (task.cancelled()) return {};
+  return ordered(surface, pieces, task);
 }
 
 }  // namespace lodestone::spatial::detail

@@ -21,7 +21,8 @@ TEST(ErrorCurve, is_twice_what_the_levels_before_lead_one_to_expect) {
       << "a steep curve is followed";
   EXPECT_DOUBLE_EQ(most_in_line({{1000, 1e-4}}, 100, 1, false), 0.08) << "so few triangles can't do better";
   EXPECT_DOUBLE_EQ(most_in_line({{1000, 1e-4}}, 100, 1, true), 0.32) << "nor can so few parts";
-  EXPECT_TRUE(std::isinf(most_in_line({{1'000'000, 1e-6}}, 100'000, 1, false))) << "flat parts tell nothing of the rest";
+  EXPECT_TRUE(std::isinf(most_in_line({{1'000'000, 1e-6}}, 100'000, 1, false)))
+      << "flat parts tell nothing of the rest";
   EXPECT_DOUBLE_EQ(most_in_line({{1'000'000, 2e-4}, {900'000, 1e-6}}, 1'000'000, 1, false), 1e-3) << "is no ruin";
 }
 

@@ -136,6 +136,15 @@ TEST(Validate, logs_fit_their_mesh) {
   log = log_of_a_cube();
   log.wedges[0].kept = 24;
   test::expect_refused(validate(log, mesh), "collapse log: merge 0 names wedge 24 of 24", "wedge");
+  for (const float blend : {1.5F, std::numeric_limits<float>::quiet_NaN()}) {
+    log = log_of_a_cube();
+    log.wedges[0].blend = blend;
+    test::expect_bad_argument(validate(log, mesh), "blend");
+  }
+  log = log_of_a_cube();
+  log.collapses.push_back(log.collapses[0]);
+  log.collapses[0].first_wedge = 1;  // after the next one's
+  test::expect_bad_argument(validate(log, mesh), "wedges that do not rise");
   log = log_of_a_cube();
   log.dropped = {12};
   test::expect_refused(validate(log, mesh), "collapse log: it leaves out triangle 12 of 12", "dropped");

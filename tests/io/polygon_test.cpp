@@ -168,8 +168,10 @@ Corners laps(std::size_t n) {
 }
 
 TEST(Polygon, crossing_ones_still_give_a_result) {
-  const std::pair<const char*, Corners> shapes[] = {
-      {"eight", figure_of_eight(4000)}, {"tangle", tangle(1500)}, {"laps", laps(300'000)}, {"one place", Corners(7, Vec3d{1, 2, 3})}};
+  const std::pair<const char*, Corners> shapes[] = {{"eight", figure_of_eight(4000)},
+                                                    {"tangle", tangle(1500)},
+                                                    {"laps", laps(300'000)},
+                                                    {"one place", Corners(7, Vec3d{1, 2, 3})}};
   for (const auto& [name, corners] : shapes) {
     const Cut got = cut(corners);
     expect_whole(corners, got, name);
