@@ -17,12 +17,12 @@ constexpr std::size_t kChunk = 4096;
 // What one vertex gets.
 struct Tuple {
   Vec3f normal;
-  Vec3f color;  // light, whole 255ths
+  Vec3f color;  // light, whole 65535ths: with 255ths dark colours would lie in bands
 };
 
-float whole_255th(double light) {
+float whole_65535th(double light) {
   const double cut = light > 0 ? std::min(light, 1.0) : 0.0;
-  return static_cast<float>(std::floor(cut * 255 + 0.5)) / 255.0F;
+  return static_cast<float>(std::floor(cut * 65535 + 0.5)) / 65535.0F;
 }
 
 std::vector<Tuple> tuples_of(const Mesh& target, const BakeSource& source, const Task& task) {
@@ -39,7 +39,7 @@ std::vector<Tuple> tuples_of(const Mesh& target, const BakeSource& source, const
       const bool agree = dot(theirs, own[v]) > 0 || own[v] == Vec3d{};
       const Vec3d normal = agree ? theirs : own[v];
       tuples[v].normal = to_float(normal == Vec3d{} ? Vec3d{0, 0, 1} : normal);
-      for (std::size_t k = 0; k < 3; ++k) tuples[v].color[k] = whole_255th(light[k]);
+      for (std::size_t k = 0; k < 3; ++k) tuples[v].color[k] = whole_65535th(light[k]);
     }
     task.advance(static_cast<double>(end - begin) / static_cast<double>(tuples.size()));
   });
@@ -66,12 +66,12 @@ void set_normals(Mesh& mesh, const std::vector<Tuple>& tuples) {
 
 void set_colors(Mesh& mesh, const std::vector<Tuple>& tuples) {
   drop_streams(mesh, Semantic::color);
-  AttributeStream stream = make_stream("COLOR_0", Semantic::color, 4, ComponentType::uint8, true, mesh.wedge_count());
+  AttributeStream stream = make_stream("COLOR_0", Semantic::color, 3, ComponentType::uint16, true, mesh.wedge_count());
+  stream.is_light = true;
   auto& values = std::get<std::vector<float>>(stream.values);
   for (std::uint32_t w = 0; w < mesh.wedge_count(); ++w) {
     const Vec3f& c = tuples[mesh.vertex_of(w)].color;
-    for (std::size_t k = 0; k < 3; ++k) values[4 * std::size_t{w} + k] = c[k];
-    values[4 * std::size_t{w} + 3] = 1;
+    for (std::size_t k = 0; k < 3; ++k) values[3 * std::size_t{w} + k] = c[k];
   }
   mesh.attributes.push_back(std::move(stream));
 }

@@ -40,6 +40,7 @@ void add_scan_colors(const PointCloud& cloud, const spatial::KdTree& tree, doubl
     return;
   }
   AttributeStream stream = make_stream("COLOR_0", Semantic::color, 3, ComponentType::uint16, true, mesh.wedge_count());
+  stream.is_light = true;
   auto& values = std::get<std::vector<float>>(stream.values);
   const std::size_t wedges = mesh.wedge_count();
   parallel_for(wedges, kWedgesAtOnce, task, [&](std::size_t begin, std::size_t end, std::size_t) {

@@ -45,6 +45,7 @@ struct AttributeStream {
   std::uint32_t components = 1;
   ComponentType type = ComponentType::float32;
   bool normalized = false;
+  bool is_light = false;  ///< colours that were averaged as light: formats whose colours are sRGB get them as that
   std::variant<std::vector<float>, std::vector<double>, std::vector<std::uint32_t>> values;
   /// One entry a face group: 0 where the group's primitive did not have this stream. Empty = all have it.
   std::vector<std::uint8_t> present;

@@ -41,13 +41,11 @@ std::string_view image_extension(std::string_view mime) {
   return {};
 }
 
-std::shared_ptr<const Image> load_image_near(const std::filesystem::path& folder, std::string_view name,
-                                             std::vector<std::string>& warnings, const std::filesystem::path& from) {
+std::shared_ptr<const Image> load_image(const std::optional<std::filesystem::path>& path, std::string_view name,
+                                        std::vector<std::string>& warnings) {
   const auto image = std::make_shared<Image>();
-  const std::string_view bare = name.substr(name.find_last_of("/\\") + 1);
-  image->name = bare;
-  const std::optional<std::filesystem::path> path = find_near(folder, from, name);
   if (!path) {
+    image->name = name.substr(name.find_last_of("/\\") + 1);
     warnings.push_back(fmt::format("the texture '{}' was not found in the model's folder", name));
     return image;
   }
@@ -65,6 +63,11 @@ std::shared_ptr<const Image> load_image_near(const std::filesystem::path& folder
   }
   image->encoded.assign(as_bytes.begin(), as_bytes.end());
   return image;
+}
+
+std::shared_ptr<const Image> load_image_near(const std::filesystem::path& folder, std::string_view name,
+                                             std::vector<std::string>& warnings) {
+  return load_image(NearFiles(folder).find({}, name), name, warnings);
 }
 
 namespace {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,11 +20,14 @@ std::string image_mime(std::span<const std::byte> encoded);
 /// ".png", ".jpg", …; empty for an unknown type.
 std::string_view image_extension(std::string_view mime);
 
-/// Loads an image that a model in `folder` names, or a file of it in `folder / from`; see find_near(). Missing: an
-/// Image without bytes, and a warning.
+/// Loads the image in `path`, which a model calls `name`. Missing, not to be read or of no known type: an Image without
+/// bytes, and a warning.
+std::shared_ptr<const Image> load_image(const std::optional<std::filesystem::path>& path, std::string_view name,
+                                        std::vector<std::string>& warnings);
+
+/// Loads an image that a model in `folder` names; see NearFiles. Errors as above.
 std::shared_ptr<const Image> load_image_near(const std::filesystem::path& folder, std::string_view name,
-                                             std::vector<std::string>& warnings,
-                                             const std::filesystem::path& from = {});
+                                             std::vector<std::string>& warnings);
 
 /// An image that is written beside a model, and its file name there.
 struct TextureFile {

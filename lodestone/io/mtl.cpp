@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "lodestone/io/mtl_detail.h"
+#include "lodestone/io/mtl_images_detail.h"
 #include "lodestone/io/mtl_words_detail.h"
+#include "lodestone/io/read_detail.h"
 
 namespace lodestone::io {
 
@@ -13,11 +14,19 @@ namespace {
 
 float share(float value) { return value >= 0 ? std::min(value, 1.0F) : 0.0F; }
 
+// Options of the kept line of a map that a field holds, too: the line stands for both. Nothing without one.
+const MtlLine* line_of(const Material& material, std::string_view key, const Image* texture) {
+  for (const MtlLine& line : material.mtl_lines) {
+    if (line.texture && line.texture.get() == texture && key_of(line.text) == key) return &line;
+  }
+  return nullptr;
+}
+
 class MtlParser {
  public:
-  MtlParser(const std::filesystem::path& folder, const std::filesystem::path& from, std::vector<Material>& materials,
+  MtlParser(MtlImages& images, const std::filesystem::path& from, std::vector<Material>& materials,
             std::vector<std::string>& warnings)
-      : folder_(folder), from_(from), materials_(materials), warnings_(warnings) {}
+      : images_(images), from_(from), materials_(materials), warnings_(warnings) {}
 
   void line(std::string_view whole) {
     whole = trimmed(whole);
@@ -49,9 +58,15 @@ class MtlParser {
     const std::shared_ptr<const Image>& texture = material.base_color_texture;
     if (texture && color[0] == 0 && color[1] == 0 && color[2] == 0) color = {1, 1, 1, color[3]};
     if (!has_roughness_) material.roughness = roughness_of_highlight(material).value_or(material.roughness);
-    for (const MtlLine& line : material.mtl_lines) {
-      material.blend = material.blend || (texture && line.texture == texture && key_of(line.text) == "map_d");
-    }
+    if (line_of(material, "map_d", texture.get()) != nullptr && images_.is_transparent(texture)) material.blend = true;
+  }
+
+  // Call it after the last line.
+  void tell() {
+    if (left_out_ == 0) return;
+    warnings_.push_back(fmt::format(
+        "{} left out, as a material keeps {} at most",
+        counted(left_out_, "line of the material library was", "lines of the material library were"), kMostLines));
   }
 
  private:
@@ -83,7 +98,7 @@ class MtlParser {
     bool has_options = false;
     while (!take_option(rest).empty()) has_options = true;
     const std::string_view name = trimmed(rest);
-    const std::shared_ptr<const Image> texture = image(name);
+    const std::shared_ptr<const Image> texture = images_.load(from_, name, warnings_);
     if (key == "map_kd") material.base_color_texture = texture;
     if (key == "norm") material.normal_texture = texture;
     const bool held = (key == "map_kd" || key == "norm") && !has_options;
@@ -98,35 +113,22 @@ class MtlParser {
   void keep(std::string_view line, std::shared_ptr<const Image> texture = nullptr) {
     const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t'; };
     if (std::any_of(line.begin(), line.end(), is_control)) return;
-    materials_.back().mtl_lines.push_back({std::string(line), std::move(texture)});
-  }
-
-  std::shared_ptr<const Image> image(std::string_view name) {
-    if (name.empty()) return nullptr;
-    const auto [at, is_new] = images_.try_emplace(std::string(name));
-    if (!is_new) return at->second;
-    std::shared_ptr<const Image> loaded = load_image_near(folder_, name, warnings_, from_);
-    for (const auto& [other, known] : images_) {  // the same file by another name
-      if (known && known->name == loaded->name && known->encoded == loaded->encoded) loaded = known;
+    std::vector<MtlLine>& lines = materials_.back().mtl_lines;
+    if (lines.size() == kMostLines) {
+      ++left_out_;
+    } else {
+      lines.push_back({std::string(line), std::move(texture)});
     }
-    return at->second = std::move(loaded);
   }
 
-  const std::filesystem::path& folder_;
+  static constexpr std::size_t kMostLines = 256;  // kept of a material: a damaged file may hold any number
+  MtlImages& images_;
   const std::filesystem::path& from_;
   std::vector<Material>& materials_;
   std::vector<std::string>& warnings_;
-  std::map<std::string, std::shared_ptr<const Image>> images_;
+  std::size_t left_out_ = 0;
   bool open_ = false, has_roughness_ = false;
 };
-
-// Options of the kept line of a map that a field holds, too: the line stands for both. Nothing without one.
-const MtlLine* line_of(const Material& material, std::string_view key, const Image* texture) {
-  for (const MtlLine& line : material.mtl_lines) {
-    if (line.texture && line.texture.get() == texture && key_of(line.text) == key) return &line;
-  }
-  return nullptr;
-}
 
 void append_map(std::string& out, const Material& material, std::string_view key, std::string_view written,
                 const Image* texture, std::span<const TextureFile> textures) {
@@ -171,16 +173,17 @@ std::optional<float> roughness_of_highlight(const Material& material) {
   return shines ? std::sqrt(std::sqrt(2 / (*exponent + 2))) : 1.0F;
 }
 
-void read_mtl(std::string_view text, const std::filesystem::path& folder, const std::filesystem::path& from,
+void read_mtl(std::string_view text, MtlImages& images, const std::filesystem::path& from,
               std::vector<Material>& materials, std::vector<std::string>& warnings) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  MtlParser parser(folder, from, materials, warnings);
+  MtlParser parser(images, from, materials, warnings);
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     parser.line(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   parser.finish();
+  parser.tell();
 }
 
 std::string mtl_text(std::span<const Material> materials, std::span<const std::string> names,

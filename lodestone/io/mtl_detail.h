@@ -14,12 +14,15 @@
 
 namespace lodestone::io {
 
-/// Appends the materials of an MTL text that lies in `folder / from`: Kd, d or Tr, map_Kd, and of the PBR extension Pr,
+class MtlImages;
+
+/// Appends the materials of an MTL text that lies in the folder `from` of the images' root: Kd, d or Tr, map_Kd, and of the PBR extension Pr,
 /// Pm and norm. All other lines, and of these the options of maps, are kept verbatim in Material::mtl_lines, textures
-/// with their images; comments go. Images are found by find_near(), and loaded once each. A black Kd beside a map_Kd
+/// with their images, up to 256 of a material; comments go. A black Kd beside a map_Kd
 /// counts as white: exporters write it, and it would make the texture black. Without Pr the roughness is that of the
-/// highlight, see roughness_of_highlight(). A map_d that is the map_Kd makes Material::blend.
-void read_mtl(std::string_view text, const std::filesystem::path& folder, const std::filesystem::path& from,
+/// highlight, see roughness_of_highlight(). A map_d that is the map_Kd makes Material::blend
+/// where the image is transparent anywhere.
+void read_mtl(std::string_view text, MtlImages& images, const std::filesystem::path& from,
               std::vector<Material>& materials, std::vector<std::string>& warnings);
 
 /// (2 / (Ns + 2))^1/4, the roughness whose GGX highlight is as wide as Blinn and Phong's with exponent Ns; 1 where Ks

@@ -53,7 +53,8 @@ bool is_normal_map(const Image& image) {
 
 class Look {
  public:
-  Look(const Material& material, std::vector<std::string>& left_out) : material_(material), left_out_(left_out) {}
+  Look(const Material& material, std::vector<std::string>& left_out)
+      : material_(material), highlight_(roughness_of_highlight(material)), left_out_(left_out) {}
 
   MtlLook look() {
     for (const MtlLine& line : material_.mtl_lines) take(line);
@@ -72,7 +73,7 @@ class Look {
       if (n == 1) v[1] = v[2] = v[0];
       for (std::size_t k = 0; k < 3; ++k) look_.emissive[k] = v[k] > 0 ? std::min(v[k], 1.0F) : 0.0F;
       has_emission_ = n > 0;
-    } else if (key == "ns" && roughness_of_highlight(material_) == material_.roughness) {
+    } else if (key == "ns" && highlight_ == material_.roughness) {
       // is the roughness
     } else if (is_map_key(key)) {
       take_map(line, word, key, rest);
@@ -87,7 +88,7 @@ class Look {
                          is_normal_map(*line.texture);
     if (is_bump) look_.normal_texture = line.texture.get();
     if (key == "map_ke") look_.emissive_texture = line.texture.get();
-    const bool is_alpha = key == "map_d" && line.texture == material_.base_color_texture;
+    const bool is_alpha = key == "map_d" && line.texture == material_.base_color_texture && material_.blend;
     if (!is_bump && !is_alpha && key != "map_ke" && key != "map_kd" && key != "norm") {
       left_out_.add(word.substr(0, 40));
       return;
@@ -105,6 +106,7 @@ class Look {
   }
 
   const Material& material_;
+  const std::optional<float> highlight_;
   LeftOut left_out_;
   MtlLook look_;
   bool has_emission_ = false;

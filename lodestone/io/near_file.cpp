@@ -47,38 +47,45 @@ std::vector<fs::path> candidates(const fs::path& from, std::string_view name) {
   return out;
 }
 
-// Of names that differ in case alone the first in the alphabet.
-std::optional<fs::path> find_in_any_case(const fs::path& root, const fs::path& wanted) {
-  fs::path at = root.empty() ? fs::path(".") : root;
+}  // namespace
+
+const std::map<std::string, std::string>& NearFiles::names_in(const fs::path& folder) {
+  const auto [at, is_new] = listed_.try_emplace(folder);
+  if (!is_new) return at->second;
+  std::error_code error;
+  fs::directory_iterator entry(folder, error), end;
+  for (; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    std::string& kept = at->second[lower_case(name)];
+    if (kept.empty() || name < kept) kept = name;
+  }
+  return at->second;
+}
+
+std::optional<fs::path> NearFiles::find_in_any_case(const fs::path& wanted) {
+  fs::path at = root_.empty() ? fs::path(".") : root_;
   for (const fs::path& part : wanted) {
     std::error_code error;
-    if (fs::exists(at / part, error)) {
+    if (!fs::exists(at / part, error)) {
+      const std::map<std::string, std::string>& names = names_in(at);
+      const auto found = names.find(lower_case(part.string()));
+      if (found == names.end()) return std::nullopt;
+      at /= found->second;
+    } else {
       at /= part;
-      continue;
     }
-    const std::string lower = lower_case(part.string());
-    std::string best;
-    fs::directory_iterator entry(at, error), end;
-    for (; !error && entry != end; entry.increment(error)) {
-      const std::string name = entry->path().filename().string();
-      if (lower_case(name) == lower && (best.empty() || name < best)) best = name;
-    }
-    if (best.empty()) return std::nullopt;
-    at /= best;
   }
   return is_file(at) ? std::optional(at) : std::nullopt;
 }
 
-}  // namespace
-
-std::optional<fs::path> find_near(const fs::path& root, const fs::path& from, std::string_view name) {
+std::optional<fs::path> NearFiles::find(const fs::path& from, std::string_view name) {
   if (name.find('\0') != std::string_view::npos) return std::nullopt;
   const std::vector<fs::path> paths = candidates(from, name);
   for (const fs::path& path : paths) {
-    if (is_file(root / path)) return root / path;
+    if (is_file(root_ / path)) return root_ / path;
   }
   for (const fs::path& path : paths) {
-    if (std::optional<fs::path> found = find_in_any_case(root, path)) return found;
+    if (std::optional<fs::path> found = find_in_any_case(path)) return found;
   }
   return std::nullopt;
 }

@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 
 #include "lodestone/base/file.h"
 #include "lodestone/io/mtl_detail.h"
-#include "lodestone/io/near_file_detail.h"
+#include "lodestone/io/mtl_images_detail.h"
 #include "lodestone/io/obj_materials_detail.h"
 #include "lodestone/io/read_detail.h"
 #include "lodestone/io/text_reader_detail.h"
@@ -45,20 +46,24 @@ std::uint32_t ObjMaterials::group() {
 // A library line names one file, whose name may hold blanks, or several.
 std::vector<Material> ObjMaterials::load_libraries(std::vector<std::filesystem::path>& files,
                                                    std::vector<std::string>& warnings) const {
+  if (folder_ == nullptr) return {};
   std::vector<Material> materials;
+  MtlImages images(*folder_);
+  std::set<std::filesystem::path> known;
   const auto load = [&](std::string_view name) {
-    const std::optional<std::filesystem::path> path = find_near(*folder_, {}, name);
+    const std::optional<std::filesystem::path> path = images.find({}, name);
     if (!path) return false;
+    if (!known.insert(*path).second) return true;
     const Result<std::string> text = read_file(*path);
     if (!text) return false;
     files.push_back(*path);
-    read_mtl(*text, *folder_, path->parent_path().lexically_relative(*folder_), materials, warnings);
+    read_mtl(*text, images, path->parent_path().lexically_relative(*folder_), materials, warnings);
     return true;
   };
   std::size_t missing = 0;
   std::string first_missing;
   for (const std::string& names : libraries_) {
-    if (folder_ == nullptr || load(names)) continue;
+    if (load(names)) continue;
     std::string_view rest = names;
     for (std::string_view name = next_word(rest); !name.empty(); name = next_word(rest)) {
       if (load(name)) continue;
@@ -70,6 +75,7 @@ std::vector<Material> ObjMaterials::load_libraries(std::vector<std::filesystem::
                                    counted(missing, "material library was", "material libraries were"), first_missing,
                                    missing > 1 ? " and others" : ""));
   }
+  images.tell(warnings);
   return materials;
 }
 

@@ -17,6 +17,7 @@
 #include "lodestone/io/obj_write.h"
 #include "lodestone/io/off_write.h"
 #include "lodestone/io/ply_write.h"
+#include "lodestone/io/shown_colors_detail.h"
 #include "lodestone/io/stl_write.h"
 #include "lodestone/io/text_reader_detail.h"
 
@@ -137,6 +138,7 @@ Result<WriteReport> write_plain(const Model& model, const fs::path& path, const 
                                 const Task& task) {
   const std::string e = extension_of(path);
   if (is_gltf(e)) return write_gltf(model, path, options, task);
+  if (has_light_colors(model)) return write_plain(with_shown_colors(model), path, options, task);
   if (e == ".ply") return write_ply(model, path, task);
   if (e == ".obj") return write_obj(model, path, task);
   if (e == ".stl") return write_stl(model, path, task);

@@ -62,23 +62,22 @@ TEST(Transfer, takes_the_targets_own_normal_where_the_sources_points_away) {
   }
 }
 
-TEST(Transfer, colours_are_the_sources_to_a_byte) {
+TEST(Transfer, colours_are_the_sources_in_16_bits) {
   const Model source = test::with_gradient(test::sphere(80));
   const Mesh coarse = test::sphere(20);
   const Mesh got = transferred(coarse, source);
   const AttributeStream* color = find_stream(got, Semantic::color);
   ASSERT_NE(color, nullptr);
-  EXPECT_EQ(color->components, 4U);
-  EXPECT_EQ(color->type, ComponentType::uint8);
+  EXPECT_EQ(color->components, 3U);
+  EXPECT_EQ(color->type, ComponentType::uint16);
   EXPECT_TRUE(color->normalized);
   const auto& values = std::get<std::vector<float>>(color->values);
   for (std::size_t v = 0; v < coarse.vertex_count(); ++v) {
     const Vec3f& p = coarse.positions[v];
-    EXPECT_NEAR(values[4 * v], light_of_srgb((double(p.x) / 1.05 + 1) / 2), 0.012);
-    EXPECT_NEAR(values[4 * v + 1], light_of_srgb((double(p.y) / 1.05 + 1) / 2), 0.012);
-    EXPECT_EQ(values[4 * v + 3], 1);
-    const float whole = values[4 * v] * 255;
-    EXPECT_NEAR(whole, std::round(whole), 1e-4);
+    EXPECT_NEAR(values[3 * v], light_of_srgb((double(p.x) / 1.05 + 1) / 2), 0.012);
+    EXPECT_NEAR(values[3 * v + 1], light_of_srgb((double(p.y) / 1.05 + 1) / 2), 0.012);
+    const float whole = values[3 * v] * 65535;
+    EXPECT_NEAR(whole, std::round(whole), 0.01);
   }
 }
 
@@ -90,10 +89,10 @@ TEST(Transfer, a_thin_wall_keeps_the_colour_of_each_side) {
   const Mesh lower = test::make_mesh({{-0.5F, -0.5F, 0.001F}, {0.5F, -0.5F, 0.001F}, {0, 0.5F, 0.001F}}, {{0, 2, 1}});
   const Mesh red = transferred(upper, plate), blue = transferred(lower, plate);
   for (std::size_t v = 0; v < 3; ++v) {
-    EXPECT_EQ(test::floats(red, Semantic::color)[4 * v], 1);
-    EXPECT_EQ(test::floats(red, Semantic::color)[4 * v + 2], 0);
-    EXPECT_EQ(test::floats(blue, Semantic::color)[4 * v], 0);
-    EXPECT_EQ(test::floats(blue, Semantic::color)[4 * v + 2], 1);
+    EXPECT_EQ(test::floats(red, Semantic::color)[3 * v], 1);
+    EXPECT_EQ(test::floats(red, Semantic::color)[3 * v + 2], 0);
+    EXPECT_EQ(test::floats(blue, Semantic::color)[3 * v], 0);
+    EXPECT_EQ(test::floats(blue, Semantic::color)[3 * v + 2], 1);
   }
 }
 
@@ -106,7 +105,7 @@ TEST(Transfer, sees_the_source_where_its_instances_stand) {
   for (std::size_t v = 0; v < target.vertex_count(); ++v) {
     const Vec3d outward = normalized(target.position(static_cast<std::uint32_t>(v)) - Vec3d{5, 0, 0});
     EXPECT_GT(dot(normal_of(got, v), outward), 0.99);
-    EXPECT_NEAR(test::floats(got, Semantic::color)[4 * v], light_of_srgb((-outward.x / 1.05 + 1) / 2), 0.02);
+    EXPECT_NEAR(test::floats(got, Semantic::color)[3 * v], light_of_srgb((-outward.x / 1.05 + 1) / 2), 0.02);
   }
 }
 

@@ -54,9 +54,9 @@ class ObjMaterialsTest : public test::InFolder {
     return report ? report->warnings : std::vector<std::string>();
   }
   // All pixels of one colour.
-  std::string picture(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
+  std::string picture(std::uint8_t r, std::uint8_t g, std::uint8_t b, std::uint8_t alpha = 255) {
     Pixels pixels{8, 8, {}};
-    for (int i = 0; i < 64; ++i) pixels.rgba.insert(pixels.rgba.end(), {r, g, b, 255});
+    for (int i = 0; i < 64; ++i) pixels.rgba.insert(pixels.rgba.end(), {r, g, b, alpha});
     const auto image = png_image(pixels, "p");
     EXPECT_TRUE(image);
     const auto* bytes = reinterpret_cast<const char*>((*image)->encoded.data());
@@ -137,7 +137,7 @@ TEST_F(ObjMaterialsTest, a_file_named_in_two_ways_is_written_once) {
 }
 
 TEST_F(ObjMaterialsTest, gltf_gets_what_it_holds_and_the_rest_is_told) {
-  put("color.png", picture(200, 100, 50));
+  put("color.png", picture(200, 100, 50, 128));
   put("normal.png", picture(128, 128, 255));
   put("glow.png", picture(0, 80, 0));
   put("m.mtl",
@@ -155,6 +155,34 @@ TEST_F(ObjMaterialsTest, gltf_gets_what_it_holds_and_the_rest_is_told) {
   const auto back = read_model(folder_ / "out" / "m.gltf");
   ASSERT_TRUE(back) << back.error().line();
   EXPECT_NEAR(back->materials[0].roughness, 0.5, 1e-6) << "the fourth root of 2 / (30 + 2)";
+}
+
+TEST_F(ObjMaterialsTest, a_map_without_alpha_makes_nothing_transparent) {
+  put("color.png", picture(200, 100, 50));
+  put("m.mtl", "newmtl a\nmap_Kd color.png\nmap_d color.png\n");
+  put("m.obj", "mtllib m.mtl\n" + kTriangle);
+  EXPECT_EQ(write(read(), "m.gltf"), (std::vector<std::string>{"properties of materials were left out: map_d"}));
+  EXPECT_EQ(text("m.gltf").find("BLEND"), std::string::npos);
+  write(read(), "n.obj");
+  EXPECT_NE(text("n.mtl").find("map_d color.png"), std::string::npos) << "the OBJ keeps its line";
+}
+
+TEST_F(ObjMaterialsTest, a_damaged_library_is_read_in_bounded_time) {
+  std::string mtl = "newmtl a\n";
+  for (int i = 0; i < 20'000; ++i) mtl += "Ns 10\n";
+  for (int i = 0; i < 20'000; ++i) mtl += "newmtl m" + std::to_string(i) + "\nmap_Kd no" + std::to_string(i) + ".png\n";
+  put("m.mtl", mtl);
+  put("m.obj", "mtllib m.mtl\n" + kTriangle);
+  const Model model = read();
+  ASSERT_EQ(model.materials.size(), 1U);
+  EXPECT_EQ(model.materials[0].mtl_lines.size(), 256U);
+  const auto told = [&](const std::string& part) {
+    return std::any_of(model.warnings.begin(), model.warnings.end(),
+                       [&](const std::string& w) { return w.find(part) != std::string::npos; });
+  };
+  EXPECT_TRUE(told("19,744 lines of the material library were left out"));
+  EXPECT_TRUE(told("15,904 lines of the material libraries would name more than 4,096 textures"));
+  write(model, "m.gltf");
 }
 
 TEST_F(ObjMaterialsTest, a_height_map_is_no_normal_map) {
