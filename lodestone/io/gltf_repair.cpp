@@ -256,7 +256,9 @@ bool is_quantized(const std::string& name, bool morph, const Json& accessor) {
   if (type < 5120 || type > 5123) return false;
   if (name == "POSITION") return true;
   const Semantic semantic = attribute_kind(name, morph).semantic;
-  if (semantic == Semantic::uv) return type == 5120 || type == 5122 || member(accessor, "normalized") == nullptr;
+  const Json* normalized = member(accessor, "normalized");
+  const bool is_normalized = normalized != nullptr && *normalized == true;
+  if (semantic == Semantic::uv) return type == 5120 || type == 5122 || !is_normalized;
   return semantic == Semantic::normal || semantic == Semantic::tangent || semantic == Semantic::morph_normal ||
          semantic == Semantic::morph_tangent;
 }

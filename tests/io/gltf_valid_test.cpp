@@ -256,5 +256,21 @@ TEST_F(GltfValid, names_lengths_and_types_against_the_format_are_mended_at_all_l
   EXPECT_EQ(out.json.value("extensionsRequired", Json()), Json({"KHR_mesh_quantization"}));
 }
 
+TEST_F(GltfValid, texture_coordinates_in_bytes_are_quantized_whether_normalized_is_absent_or_false) {
+  for (const bool spelt : {false, true}) {
+    GltfBuilder b;
+    Json sheet = b.sheet(4, 0);
+    const std::size_t uv = b.accessor(std::vector<std::uint8_t>(50, 1), "VEC2", 2, false, 4);
+    if (spelt) b.json["accessors"][uv]["normalized"] = false;
+    sheet["attributes"]["TEXCOORD_0"] = uv;
+    b.json["meshes"] = {{{"primitives", {sheet}}}};
+    b.json["nodes"] = {{{"mesh", 0}}};
+    const Result<Model> model = read_gltf_bytes(b.glb(), "made.glb");
+    ASSERT_TRUE(model && write_gltf(*model, folder_ / "out.glb"));
+    const Json json = test::open_glb(*read_file(folder_ / "out.glb")).json;
+    EXPECT_EQ(json.value("extensionsRequired", Json()), Json({"KHR_mesh_quantization"}));
+  }
+}
+
 }  // namespace
 }  // namespace lodestone::io
