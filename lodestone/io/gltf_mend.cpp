@@ -29,7 +29,7 @@ class Mender {
  public:
   Mender(const Document::Data& data, MendedViews& views) : data_(data), views_(views) {}
 
-  // Nothing for accessors whose elements are no plain part of a view: sparse ones, zeros.
+  // The accessor as it is by now: others that share its view may have been mended before. Nothing for accessors whose elements are no plain part of a view: sparse ones, zeros.
   std::optional<Place> place_of(const Json& index) {
     const Json& accessors = array_member(data_.json, "accessors");
     const std::uint64_t a = as_uint(index).value_or(accessors.size());
@@ -39,10 +39,13 @@ class Mender {
     if (!found || found->own != nullptr || view == nullptr) return std::nullopt;
     Place out{std::move(*found), static_cast<std::size_t>(as_uint(*view).value_or(0)), 0};
     out.offset = static_cast<std::size_t>(out.accessor.data - data_.views[out.view].bytes.data());
+    if (const auto mended = views_.find(out.view); mended != views_.end()) {
+      out.accessor.data = std::as_bytes(std::span(mended->second)).data() + out.offset;
+    }
     return out;
   }
 
-  // All elements as the document has them; normalised integers divided.
+  // All elements; normalised integers divided.
   static std::vector<float> values_of(const Accessor& accessor) {
     std::vector<float> out(accessor.count * accessor.components);
     gather(accessor, {}, accessor.count, out.data(), accessor.components, 0, {});
@@ -72,8 +75,13 @@ class Mender {
 
 // True if anything was wrong.
 bool mend_vector(Semantic semantic, std::size_t components, double* v) {
+  bool wrong = false;
+  for (std::size_t k = 0; k < components; ++k) {
+    if (std::isfinite(v[k])) continue;
+    v[k] = 0;
+    wrong = true;
+  }
   if (semantic == Semantic::color) {
-    bool wrong = false;
     for (std::size_t k = 0; k < components; ++k) {
       wrong = wrong || v[k] < 0 || v[k] > 1;
       v[k] = std::clamp(v[k], 0.0, 1.0);
@@ -82,7 +90,7 @@ bool mend_vector(Semantic semantic, std::size_t components, double* v) {
   }
   const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   const bool sign = semantic == Semantic::tangent && v[3] != 1 && v[3] != -1;
-  if (std::abs(length - 1) <= kUnitSlack && !sign) return false;
+  if (std::abs(length - 1) <= kUnitSlack && !sign) return wrong;
   for (std::size_t k = 0; k < 3; ++k) v[k] = length > 1e-12 ? v[k] / length : k == 2 ? 1.0 : 0.0;
   if (sign) v[3] = v[3] < 0 ? -1 : 1;
   return true;
@@ -180,7 +188,7 @@ bool settle_influences(std::span<std::uint32_t> joints, std::span<double> weight
   bool changed = false;
   for (std::size_t k = 0; k < joints.size(); ++k) {
     const bool unknown = joints[k] >= joint_count;
-    if (!unknown && weights[k] >= 0) continue;
+    if (!unknown && weights[k] >= 0 && std::isfinite(weights[k])) continue;
     changed = true;
     weights[k] = 0;
     if (unknown) joints[k] = 0;

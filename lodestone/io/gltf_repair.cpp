@@ -72,28 +72,37 @@ Json as_stored(const std::vector<float>& values, ComponentType type) {
   return out;
 }
 
-void repair_bounds(const Document::Data& data, std::size_t index, bool needed, Json& accessor) {
-  if (!needed && !accessor.contains("min") && !accessor.contains("max")) return;
+// False where the values have none that could be told.
+bool repair_bounds(const Document::Data& data, std::size_t index, bool needed, Json& accessor) {
+  if (!needed && !accessor.contains("min") && !accessor.contains("max")) return true;
   Result<Accessor> found = find_accessor(data, index);
-  if (!found || found->type == ComponentType::uint32 || found->count == 0) return;
+  if (!found || found->type == ComponentType::uint32 || found->count == 0) return false;
   found->normalized = false;  // bounds are told as stored
   const std::size_t n = found->components;
   std::vector<float> values(found->count * n), low(n, std::numeric_limits<float>::infinity()), high(n);
   std::fill(high.begin(), high.end(), -std::numeric_limits<float>::infinity());
   gather(*found, {}, found->count, values.data(), n, 0, {});
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i])) return;
+    if (!std::isfinite(values[i])) return false;
     low[i % n] = std::min(low[i % n], values[i]);
     high[i % n] = std::max(high[i % n], values[i]);
   }
   const Json least = as_stored(low, found->type), most = as_stored(high, found->type);
   if ((needed || accessor.contains("min")) && accessor["min"] != least) accessor["min"] = least;
   if ((needed || accessor.contains("max")) && accessor["max"] != most) accessor["max"] = most;
+  return true;
 }
 
-}  // namespace
-
-namespace {
+// As much of the document as finding accessors needs, with the mended bytes in place of its own.
+Document::Data with_mended(const Document::Data& data, const MendedViews& mended) {
+  Document::Data out;
+  out.name = data.name;
+  out.file_bytes = data.file_bytes;
+  out.json["accessors"] = array_member(data.json, "accessors");
+  out.views = data.views;
+  for (const auto& [view, bytes] : mended) out.views[view].bytes = std::as_bytes(std::span(bytes));
+  return out;
+}
 
 struct SkinSet {
   std::vector<std::uint32_t>* joints;
@@ -169,11 +178,17 @@ std::uint64_t zero_non_finite(Mesh& mesh) {
   return count;
 }
 
-void repair_accessors(const Document::Data& data, Json& json) {
+void repair_accessors(const Document::Data& data, const MendedViews& mended, Json& json) {
   const std::size_t accessors = array_member(json, "accessors").size(),
                     views = array_member(json, "bufferViews").size();
   const std::vector<bool> bounded = find_bounded(json, accessors);
-  for (std::size_t i = 0; i < accessors; ++i) repair_bounds(data, i, bounded[i], json["accessors"][i]);
+  const Document::Data now = with_mended(data, mended);
+  for (std::size_t i = 0; i < accessors; ++i) {
+    Json& accessor = json["accessors"][i];
+    const bool known = repair_bounds(now, i, bounded[i], accessor);
+    if (known || bounded[i] || !mended.contains(index_or(member(accessor, "bufferView"), views))) continue;
+    for (const char* key : {"min", "max"}) accessor.erase(key);  // those of bytes that are no more
+  }
   each_tight_accessor(json, [&](const Json& value) {
     const std::size_t a = index_or(&value, accessors);
     if (a >= accessors) return;

@@ -12,7 +12,7 @@
 
 namespace lodestone::io {
 
-/// A vertex's influences over all its sets, made possible: no weight is negative, no joint that pulls is named twice or
+/// A vertex's influences over all its sets, made possible: no weight is negative or infinite, no joint that pulls is named twice or
 /// is not below `joint_count`. True if anything was wrong.
 bool settle_influences(std::span<std::uint32_t> joints, std::span<double> weights, std::uint32_t joint_count);
 
@@ -25,10 +25,6 @@ bool repair_skin(Mesh& mesh, std::uint32_t joint_count);
 
 /// Attribute values that are not finite become zero; returns their number.
 std::uint64_t zero_non_finite(Mesh& mesh);
-
-/// Declared minima and maxima that are not those of the values, or that lack where there must be some (positions, times
-/// of animations); byteStride on views of accessors that must be tight (skins, animations) where it says nothing.
-void repair_accessors(const Document::Data& data, Json& json);
 
 /// True for the names that the format knows, and for one's own with an underscore before them.
 bool is_legal_attribute(std::string_view name);
@@ -46,6 +42,11 @@ using MendedViews = std::map<std::size_t, std::string>;
 /// `warnings`.
 MendedViews mend_values(const Document::Data& data, const std::vector<bool>& rewritten,
                         std::vector<std::string>& warnings);
+
+/// Declared minima and maxima that are not those of the values (as `mended`), or that lack where there must be some
+/// (positions, times of animations); byteStride on views of accessors that must be tight (skins, animations) where it
+/// says nothing.
+void repair_accessors(const Document::Data& data, const MendedViews& mended, Json& json);
 
 /// Views that only accessors of the rewritten meshes' triangle primitives use, Draco's included: free for other use.
 /// These accessors lose their view in `json`.

@@ -105,8 +105,7 @@ std::vector<bool> find_rewritten(const Writer& w) {
 }
 
 // Every view of the document that is still needed gets its bytes in the new binary chunk.
-void keep_views(Writer& w) {
-  const MendedViews mended = mend_values(*w.document, w.rewritten, w.report.warnings);
+void keep_views(Writer& w, const MendedViews& mended) {
   const std::vector<bool> released = release_views(*w.document, w.rewritten, w.json);
   for (std::size_t i = 0; i < w.document->views.size(); ++i) {
     if (released[i]) {
@@ -152,8 +151,9 @@ void begin_from_document(Writer& w) {
   for (const Json& mesh : array_member(w.json, "meshes")) w.source_meshes.push_back(mesh);
   w.pack.emplace(w.json, w.options.compression, w.levels.size());
   w.rewritten = find_rewritten(w);
-  repair_accessors(*w.document, w.json);
-  keep_views(w);
+  const MendedViews mended = mend_values(*w.document, w.rewritten, w.report.warnings);
+  repair_accessors(*w.document, mended, w.json);
+  keep_views(w, mended);
   keep_images(w);
   std::set<std::string> gone{kDraco, kMeshoptNames[0], kMeshoptNames[1]};
   for (const std::string& name : w.pack->moved_extensions()) {

@@ -1,6 +1,8 @@
 // glTF models made in tests: accessors from plain lists, packed into one GLB.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -66,13 +68,25 @@ struct GltfBuilder {
   template <class T>
   std::size_t positions(const std::vector<T>& values, bool normalized = false) {
     const std::size_t index = accessor(values, "VEC3", 3, normalized, sizeof(T) == 4 ? 0 : sizeof(T) == 2 ? 8 : 4);
-    Json low = {values[0], values[1], values[2]}, high = low;
+    tell_bounds(index, values, 3);
+    return index;
+  }
+  /// Gives accessor `index` the smallest and largest of `values`.
+  template <class T>
+  void tell_bounds(std::size_t index, const std::vector<T>& values, std::size_t per) {
+    std::vector<T> low(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(per)), high = low;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (values[i] < low[i % 3].get<T>()) low[i % 3] = values[i];
-      if (values[i] > high[i % 3].get<T>()) high[i % 3] = values[i];
+      low[i % per] = std::min(low[i % per], values[i]);
+      high[i % per] = std::max(high[i % per], values[i]);
     }
     json["accessors"][index]["min"] = low;
     json["accessors"][index]["max"] = high;
+  }
+  /// As accessor(), with bounds.
+  template <class T>
+  std::size_t bounded(const std::vector<T>& values, const char* type, std::size_t per, bool normalized = false) {
+    const std::size_t index = accessor(values, type, per, normalized);
+    tell_bounds(index, values, per);
     return index;
   }
   std::size_t indices(const std::vector<std::uint16_t>& values) { return accessor(values, "SCALAR", 1); }

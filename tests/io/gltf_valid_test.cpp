@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
+#include <string_view>
 
 #include "io/gltf_builder.h"
 #include "lodestone/base/file.h"
@@ -19,6 +21,25 @@ namespace fs = std::filesystem;
 using test::GlbContent;
 using test::GltfBuilder;
 using test::Json;
+
+// What accessors tell of their smallest and largest values is so.
+void expect_true_bounds(const GlbContent& glb) {
+  const Json& accessors = glb.json["accessors"];
+  for (std::size_t a = 0; a < accessors.size(); ++a) {
+    if (!accessors[a].contains("bufferView")) continue;
+    for (const char* key : {"min", "max"}) {
+      if (!accessors[a].contains(key)) continue;
+      const std::size_t n = accessors[a][key].size();
+      const std::vector<double> values = test::stored_values(glb, a, n);
+      std::vector<double> want(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n));
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        double& w = want[i % n];
+        w = std::string_view(key) == "min" ? std::min(w, values[i]) : std::max(w, values[i]);
+      }
+      EXPECT_EQ(accessors[a][key].get<std::vector<double>>(), want) << key << " of accessor " << a;
+    }
+  }
+}
 
 class GltfValid : public test::InFolder {
  protected:
@@ -42,7 +63,9 @@ class GltfValid : public test::InFolder {
     EXPECT_TRUE(report) << report.error().line();
     if (!report) return {};
     warnings_.insert(warnings_.end(), report->warnings.begin(), report->warnings.end());
-    return test::open_glb(*read_file(folder_ / "out.glb"));
+    GlbContent out = test::open_glb(*read_file(folder_ / "out.glb"));
+    expect_true_bounds(out);
+    return out;
   }
   bool told(const std::string& part) const {
     return std::any_of(warnings_.begin(), warnings_.end(),
@@ -70,8 +93,8 @@ void add_skin(GltfBuilder& b, Json& primitive, std::size_t vertices, std::vector
         w.push_back(weights[k]);
       }
     }
-    primitive["attributes"]["JOINTS_" + std::to_string(set)] = b.accessor(j, "VEC4", 4);
-    primitive["attributes"]["WEIGHTS_" + std::to_string(set)] = b.accessor(w, "VEC4", 4, !std::is_same_v<T, float>);
+    primitive["attributes"]["JOINTS_" + std::to_string(set)] = b.bounded(j, "VEC4", 4);
+    primitive["attributes"]["WEIGHTS_" + std::to_string(set)] = b.bounded(w, "VEC4", 4, !std::is_same_v<T, float>);
   }
 }
 
@@ -204,9 +227,9 @@ TEST_F(GltfValid, normals_tangents_and_colors_that_stay_in_the_file_are_put_righ
   Json points = {{"mode", 0},
                  {"attributes",
                   {{"POSITION", b.positions<float>({0, 0, 0, 1, 1, 1})},
-                   {"NORMAL", b.accessor<float>({0, 0, 2, 0, 0, 0}, "VEC3", 3)},
-                   {"TANGENT", b.accessor<float>({1, 0, 0, -0.5F, 0.5F, 0, 0, 1}, "VEC4", 4)},
-                   {"COLOR_0", b.accessor<float>({1.5F, 0.5F, -0.5F, 0, 0.25F, 1}, "VEC3", 3)}}}};
+                   {"NORMAL", b.bounded<float>({0, 0, 2, 0, 0, 0}, "VEC3", 3)},
+                   {"TANGENT", b.bounded<float>({1, 0, 0, -0.5F, 0.5F, 0, 0, 1}, "VEC4", 4)},
+                   {"COLOR_0", b.bounded<float>({1.5F, 0.5F, -0.5F, 0, 0.25F, 1}, "VEC3", 3)}}}};
   b.json["meshes"] = {{{"primitives", {b.sheet(4, 0), points}}}};
   b.json["nodes"] = {{{"mesh", 0}}};
   const GlbContent out = ladder_of(b);
@@ -218,6 +241,58 @@ TEST_F(GltfValid, normals_tangents_and_colors_that_stay_in_the_file_are_put_righ
   EXPECT_EQ(values("NORMAL", 3), (std::vector<double>{0, 0, 1, 0, 0, 1}));
   EXPECT_EQ(values("TANGENT", 4), (std::vector<double>{1, 0, 0, -1, 1, 0, 0, 1}));
   EXPECT_EQ(values("COLOR_0", 3), (std::vector<double>{1, 0.5, 0, 0, 0.25, 1}));
+}
+
+TEST_F(GltfValid, values_that_are_not_finite_go_and_bounds_tell_what_is_there_then) {
+  const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  GltfBuilder b;
+  Json points = {{"mode", 0},
+                 {"attributes",
+                  {{"POSITION", b.positions<float>({0, 0, 0, 1, 1, 1})},
+                   {"NORMAL", b.accessor<float>({0, inf, 1, nan, 0, 0}, "VEC3", 3)},
+                   {"COLOR_0", b.accessor<float>({nan, 0.5F, inf, 0, 0.25F, 1}, "VEC3", 3)}}}};
+  for (const char* name : {"NORMAL", "COLOR_0"}) {
+    b.tell_bounds<float>(points["attributes"][name].get<std::size_t>(), {0, 0, 0, 1, 1, 1}, 3);
+  }
+  add_skin<float>(b, points, 2, {0, 1, 0, 0}, {inf, 0.5F, 0, 0});
+  b.tell_bounds<float>(points["attributes"]["WEIGHTS_0"].get<std::size_t>(), {1, 1, 1, 1}, 4);
+  b.json["meshes"] = {{{"primitives", {b.sheet(4, 0), points}}}};
+  b.json["nodes"] = {{{"mesh", 0}, {"skin", 0}}};
+  add_joints(b, 2);
+  const GlbContent out = ladder_of(b);
+  const Json& attributes = out.json["meshes"][1]["primitives"][1]["attributes"];
+  const auto values = [&](const char* name, std::size_t n) {
+    return test::stored_values(out, attributes[name].get<std::size_t>(), n);
+  };
+  EXPECT_EQ(values("NORMAL", 3), (std::vector<double>{0, 0, 1, 0, 0, 1}));
+  EXPECT_EQ(values("COLOR_0", 3), (std::vector<double>{0, 0.5, 0, 0, 0.25, 1}));
+  EXPECT_EQ(values("WEIGHTS_0", 4), (std::vector<double>{0, 1, 0, 0, 0, 1, 0, 0}));
+}
+
+TEST_F(GltfValid, a_skin_that_meshes_share_is_valid_for_the_smaller_skeleton_whichever_comes_first) {
+  for (const std::size_t small : {0U, 1U}) {
+    GltfBuilder b;
+    Json sheet = b.sheet(4, 0), points = sheet;
+    points["mode"] = 0;
+    points.erase("indices");
+    add_skin<float>(b, points, 25, {0, 3, 1, 0}, {0.5F, 0.25F, 0.125F, 0});
+    b.json["meshes"] = {{{"primitives", {sheet, points}}}, {{"primitives", {sheet, points}}}};
+    b.json["nodes"] = {{{"mesh", 0}}, {{"mesh", 1}}};
+    b.json["scenes"][0]["nodes"] = {0, 1};
+    add_joints(b, 4);
+    b.json["skins"].push_back({{"joints", {2, 3}}});
+    b.json["nodes"][small]["skin"] = 1;
+    b.json["nodes"][1 - small]["skin"] = 0;
+    const GlbContent out = ladder_of(b);
+    each_primitive(out.json, [&](const Json& p) {
+      if (!p["attributes"].contains("WEIGHTS_0")) return;
+      const auto weights = test::stored_values(out, p["attributes"]["WEIGHTS_0"].get<std::size_t>(), 4);
+      const auto joints = test::stored_values(out, p["attributes"]["JOINTS_0"].get<std::size_t>(), 4);
+      EXPECT_EQ(std::vector<double>(joints.begin(), joints.begin() + 4), (std::vector<double>{0, 0, 1, 0}));
+      EXPECT_EQ(weights[1], 0);
+      EXPECT_FLOAT_EQ(static_cast<float>(weights[0] + weights[2]), 1);
+    });
+  }
 }
 
 TEST_F(GltfValid, levels_do_not_repeat_transforms_that_the_format_forbids) {

@@ -60,9 +60,9 @@ class Gltf:
         """Weights (and joints) of each vertex as given; four to a set."""
         count = self.json["accessors"][primitive["attributes"]["POSITION"]]["count"]
         for s in range(0, len(weights), 4):
-            primitive["attributes"][f"JOINTS_{s // 4}"] = self.vertices("B", 4, list(joints[s:s + 4]) * count)
+            primitive["attributes"][f"JOINTS_{s // 4}"] = self.vertices("B", 4, list(joints[s:s + 4]) * count, bounds=True)
             primitive["attributes"][f"WEIGHTS_{s // 4}"] = self.vertices(code, 4, list(weights[s:s + 4]) * count,
-                                                                        normalized=code != "f")
+                                                                        normalized=code != "f", bounds=True)
 
     def joints(self, count):
         first = len(self.json["nodes"])
@@ -243,6 +243,26 @@ def joints_out_of_range(g):
     g.joints(2)
 
 
+def shared_skin(g):
+    """Meshes that share joints and weights, drawn with skeletons of four and of two joints."""
+    shape = g.sheet()
+    g.skin(shape, [0.5, 0.25, 0.125, 0.0], (0, 3, 1, 0))
+    points = {"mode": 0, "attributes": dict(shape["attributes"])}
+    for skin in (1, 0, 1):
+        g.draw(shape, points, skin=skin)
+    g.joints(4)
+    g.json["skins"].append({"joints": g.json["skins"][0]["joints"][:2]})
+
+
+def quantized_uv(g):
+    """Bytes whose `normalized` is spelt out as false."""
+    shape = g.sheet()
+    uv = g.vertices("B", 2, [5, 7] * 81)
+    g.json["accessors"][uv]["normalized"] = False
+    shape["attributes"]["TEXCOORD_0"] = uv
+    g.draw(shape)
+
+
 def no_bounds(g):
     """Positions, morph deltas and times of animations without smallest and largest values; a wrong one."""
     shape = g.sheet(bounds=False)
@@ -258,12 +278,14 @@ def no_bounds(g):
 
 
 def odd_values(g):
-    """Normals and tangents that are no units, colours above one."""
-    shape = g.sheet()
-    shape["attributes"]["NORMAL"] = g.vertices("f", 3, [0.0, 0.0, 2.0] * 81)
-    shape["attributes"]["TANGENT"] = g.vertices("f", 4, [0.5, 0.0, 0.0, 0.5] * 81)
-    shape["attributes"]["COLOR_0"] = g.vertices("f", 3, [1.5, 0.5, -0.5] * 81)
-    g.draw(shape)
+    """Normals and tangents that are no units, colours above one; of triangles and of points, one vertex or all."""
+    for z, count in enumerate((81, 1)):
+        shape = g.sheet(z=float(z))
+        good = 81 - count
+        shape["attributes"]["NORMAL"] = g.vertices("f", 3, [0.0, 0.0, 2.0] * count + [0.0, 0.0, 1.0] * good, bounds=True)
+        shape["attributes"]["TANGENT"] = g.vertices("f", 4, [0.5, 0.0, 0.0, 0.5] * count + [1.0, 0.0, 0.0, 1.0] * good, bounds=True)
+        shape["attributes"]["COLOR_0"] = g.vertices("f", 3, [1.5, 0.5, -0.5] * count + [1.0, 0.5, 0.0] * good, bounds=True)
+        g.draw(shape, {"mode": 0, "attributes": dict(shape["attributes"])})
 
 
 def odd_attributes(g):
@@ -283,8 +305,8 @@ def wrong_morph_weights(g):
     g.json["meshes"][0]["weights"] = [0.5, 0.5, 0.5]
 
 
-CASES = [mixed_primitives, busy_nodes, odd_transforms, eight_influences, weights_off, weights_nearly, joints_out_of_range, no_bounds,
-         odd_values, odd_attributes, wrong_morph_weights]
+CASES = [mixed_primitives, busy_nodes, odd_transforms, eight_influences, weights_off, weights_nearly, joints_out_of_range, shared_skin,
+         quantized_uv, no_bounds, odd_values, odd_attributes, wrong_morph_weights]
 
 
 def write_all(folder):
