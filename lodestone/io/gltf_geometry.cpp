@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "lodestone/io/draco_detail.h"
-#include "lodestone/io/gltf_repair_detail.h"
+#include "lodestone/io/gltf_names_detail.h"
 
 namespace lodestone::io {
 
@@ -78,18 +78,28 @@ AttributePlan meaning_of(const AttributeStream& stream, std::size_t index, std::
   return plan;
 }
 
+// What streams are called whose names the format does not allow, as in all else of the document's mesh.
+std::map<std::string, std::string> new_names(const Mesh& mesh, const Json& source) {
+  std::set<std::string> names = attribute_names(source);
+  for (const AttributeStream& stream : mesh.attributes) names.insert(stream.name);
+  return legal_names(names);
+}
+
 }  // namespace
 
-std::vector<AttributePlan> plan_attributes(const Mesh& mesh, bool named, bool flip_v,
+std::vector<AttributePlan> plan_attributes(const Mesh& mesh, const Json* named, bool flip_v,
                                            std::vector<std::string>& warnings) {
+  std::map<std::string, std::string> renamed;
+  if (named != nullptr) renamed = new_names(mesh, *named);
   std::vector<AttributePlan> plans;
   std::uint32_t uvs = 0, colors = 0;
   for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
     const AttributeStream& stream = mesh.attributes[i];
     AttributePlan plan;
-    if (named) {
+    if (named != nullptr) {
+      const auto other = renamed.find(stream.name);
       plan.stream = i;
-      plan.name = is_legal_attribute(stream.name) ? stream.name : "_" + stream.name;
+      plan.name = other != renamed.end() ? other->second : stream.name;
       const bool morph = stream.semantic == Semantic::morph_position || stream.semantic == Semantic::morph_normal ||
                          stream.semantic == Semantic::morph_tangent || stream.semantic == Semantic::morph_other;
       if (morph) plan.target = stream.target;
@@ -100,8 +110,8 @@ std::vector<AttributePlan> plan_attributes(const Mesh& mesh, bool named, bool fl
       warn_once(warnings, fmt::format("attribute '{}' has values that glTF cannot hold: left out", stream.name));
       continue;
     }
-    if (!named && (stream.semantic == Semantic::normal || stream.semantic == Semantic::uv ||
-                   stream.semantic == Semantic::tangent)) {
+    if (named == nullptr && (stream.semantic == Semantic::normal || stream.semantic == Semantic::uv ||
+                             stream.semantic == Semantic::tangent)) {
       plan.type = ComponentType::float32;
       plan.normalized = false;
     }
@@ -109,7 +119,7 @@ std::vector<AttributePlan> plan_attributes(const Mesh& mesh, bool named, bool fl
       warn_once(warnings, fmt::format("attribute '{}' is double: stored as float", stream.name));
     }
     plan.flip_v = flip_v && stream.semantic == Semantic::uv;
-    if (!named) make_unique(plan.name, plans);
+    if (named == nullptr) make_unique(plan.name, plans);
     plans.push_back(std::move(plan));
   }
   return plans;

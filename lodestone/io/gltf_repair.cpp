@@ -202,26 +202,7 @@ void repair_accessors(const Document::Data& data, const MendedViews& mended, Jso
   });
 }
 
-bool is_legal_attribute(std::string_view name) {
-  if (name == "POSITION" || name.starts_with('_')) return true;
-  const Semantic semantic = attribute_kind(name, false).semantic;
-  return semantic != Semantic::generic && semantic != Semantic::categorical;
-}
-
 namespace {
-
-void repair_names(Json& attributes, std::vector<std::string>& warnings) {
-  Json out = Json::object();
-  for (const auto& [name, value] : attributes.items()) {
-    std::string legal = name;
-    while (!is_legal_attribute(legal) || (legal != name && attributes.contains(legal))) legal.insert(0, "_");
-    out[legal] = value;
-    if (legal == name) continue;
-    std::string text = fmt::format("attribute '{}' needs an underscore in glTF: named '{}'", name, legal);
-    if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(std::move(text));
-  }
-  attributes = std::move(out);
-}
 
 // As many as there are targets.
 void fit_weights(Json& holder, std::size_t targets) {
@@ -241,19 +222,11 @@ std::size_t target_count(const Json& mesh) {
 
 }  // namespace
 
-void repair_meshes(Json& json, std::vector<std::string>& warnings) {
+void repair_weights(Json& json) {
   const std::size_t meshes = array_member(json, "meshes").size();
   for (std::size_t m = 0; m < meshes; ++m) {
     Json& mesh = json["meshes"][m];
     fit_weights(mesh, target_count(mesh));
-    for (std::size_t p = 0; p < array_member(mesh, "primitives").size(); ++p) {
-      Json& primitive = mesh["primitives"][p];
-      const Json* attributes = member(primitive, "attributes");
-      if (attributes == nullptr || !attributes->is_object() || is_draco_primitive(primitive)) continue;
-      const bool legal = std::all_of(attributes->items().begin(), attributes->items().end(),
-                                     [](const auto& entry) { return is_legal_attribute(entry.key()); });
-      if (!legal) repair_names(primitive["attributes"], warnings);
-    }
   }
   for (std::size_t n = 0; n < array_member(json, "nodes").size(); ++n) {
     Json& node = json["nodes"][n];

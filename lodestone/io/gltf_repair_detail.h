@@ -5,7 +5,6 @@
 #include <map>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "lodestone/io/gltf_pack_detail.h"
@@ -26,12 +25,8 @@ bool repair_skin(Mesh& mesh, std::uint32_t joint_count);
 /// Attribute values that are not finite become zero; returns their number.
 std::uint64_t zero_non_finite(Mesh& mesh);
 
-/// True for the names that the format knows, and for one's own with an underscore before them.
-bool is_legal_attribute(std::string_view name);
-
-/// Names of one's own attributes without underscore get one, arrays of morph weights the length that the targets ask
-/// for; both in `json` only. Told in `warnings`.
-void repair_meshes(Json& json, std::vector<std::string>& warnings);
+/// Arrays of morph weights get the length that the targets ask for.
+void repair_weights(Json& json);
 
 /// Lists KHR_mesh_quantization where attributes are stored as only it allows and nobody said so.
 void list_quantization(Json& json);

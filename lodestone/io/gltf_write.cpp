@@ -21,6 +21,7 @@
 #include "lodestone/io/gltf_fresh_detail.h"
 #include "lodestone/io/gltf_geometry_detail.h"
 #include "lodestone/io/gltf_lod_detail.h"
+#include "lodestone/io/gltf_names_detail.h"
 #include "lodestone/io/gltf_repair_detail.h"
 #include "lodestone/io/meshopt_detail.h"
 #include "lodestone/io/text_reader_detail.h"
@@ -145,7 +146,8 @@ void tell_odd_transforms(Writer& w) {
 
 void begin_from_document(Writer& w) {
   w.json = w.document->json;
-  repair_meshes(w.json, w.report.warnings);
+  repair_names(w.json, w.report.warnings);
+  repair_weights(w.json);
   tell_odd_transforms(w);
   w.instance_nodes = w.document->instance_nodes;
   for (const Json& mesh : array_member(w.json, "meshes")) w.source_meshes.push_back(mesh);
@@ -179,7 +181,8 @@ void begin_fresh(Writer& w) {
 // The primitives of mesh `index` with the geometry of `mesh`; points and lines stay as they are.
 Json pack_primitives(Writer& w, std::size_t level, const Mesh& mesh, std::size_t index) {
   const bool flip_v = w.document == nullptr && !w.original.uv_origin_top;
-  const std::vector<AttributePlan> plans = plan_attributes(mesh, w.document != nullptr, flip_v, w.report.warnings);
+  const Json* named = w.document != nullptr ? &array_member(w.document->json, "meshes")[index] : nullptr;
+  const std::vector<AttributePlan> plans = plan_attributes(mesh, named, flip_v, w.report.warnings);
   GroupIndexer groups(mesh);
   Json out = Json::array();
   std::size_t group = 0;

@@ -289,9 +289,11 @@ def odd_values(g):
 
 
 def odd_attributes(g):
-    """A name of one's own without underscore, quantized values whose extension nobody lists."""
+    """Names of one's own without underscore beside such that have it, quantized values whose extension nobody lists."""
     shape = g.sheet()
     shape["attributes"]["QUALITY"] = g.vertices("f", 1, [0.5] * 81)
+    shape["attributes"]["_QUALITY"] = g.vertices("f", 1, [0.25] * 81)
+    shape["targets"] = [{"POSITION": g.vertices("f", 3, [0.0, 0.0, 0.5] * 81, bounds=True), "QUALITY": g.vertices("f", 1, [0.125] * 81)}]
     shape["attributes"]["TEXCOORD_0"] = g.vertices("h", 2, [5, 7] * 81)
     shape["attributes"]["NORMAL"] = g.vertices("b", 3, [0, 0, 127] * 81, normalized=True)
     g.draw(shape)
