@@ -20,12 +20,14 @@ Json fresh_mesh(const Mesh& mesh, std::size_t materials) {
   return out;
 }
 
-Json fresh_node(const Instance& instance, const Mesh& mesh) {
+Json fresh_node(const Model& model, std::size_t index) {
+  const Instance& instance = model.instances[index];
+  const Mesh& mesh = model.meshes[instance.mesh];
   Json out = Json::object();
   const std::string& name = instance.name.empty() ? mesh.name : instance.name;
   if (!name.empty()) out["name"] = name;
   out["mesh"] = instance.mesh;
-  place_fresh_node(out, instance, mesh);
+  place_fresh_node(out, fresh_placing(model, index));
   return out;
 }
 
@@ -49,16 +51,20 @@ void add_root(const Mat4d& transform, Json& json, Json& roots) {
 
 }  // namespace
 
-void place_fresh_node(Json& node, const Instance& instance, const Mesh& mesh) {
+Mat4d fresh_placing(const Model& model, std::size_t instance) {
+  const Instance& placed = model.instances[instance];
+  return placed.transform * Mat4d::translation(model.meshes[placed.mesh].offset);
+}
+
+void place_fresh_node(Json& node, const Mat4d& placing) {
   for (const char* key : {"translation", "matrix"}) node.erase(key);
-  const Mat4d all = instance.transform * Mat4d::translation(mesh.offset);
-  if (all.is_identity()) return;
-  Mat4d linear = all;
+  if (placing.is_identity()) return;
+  Mat4d linear = placing;
   linear.m[12] = linear.m[13] = linear.m[14] = 0;
   if (linear.is_identity()) {
-    node["translation"] = {all.m[12], all.m[13], all.m[14]};
+    node["translation"] = {placing.m[12], placing.m[13], placing.m[14]};
   } else {
-    node["matrix"] = all.m;
+    node["matrix"] = placing.m;
   }
 }
 
@@ -79,7 +85,7 @@ Json make_fresh_document(const Model& model) {
   Json roots = Json::array();
   json["nodes"] = Json::array();
   for (std::size_t i = 0; i < model.instances.size(); ++i) {
-    json["nodes"].push_back(fresh_node(model.instances[i], model.meshes[model.instances[i].mesh]));
+    json["nodes"].push_back(fresh_node(model, i));
     roots.push_back(i);
   }
   const Mat4d transform = world_to_gltf(model);

@@ -17,8 +17,10 @@ Json fresh_primitives(const Mesh& mesh, std::size_t materials);
 /// group, so that primitive g is group g).
 Json make_fresh_document(const Model& model);
 
-/// Gives a node the transform of an instance and its mesh's offset, in place of the one that it has.
-void place_fresh_node(Json& node, const Instance& instance, const Mesh& mesh);
+/// The transform of an instance and its mesh's offset.
+Mat4d fresh_placing(const Model& model, std::size_t instance);
+/// Gives a node this transform in place of the one that it has.
+void place_fresh_node(Json& node, const Mat4d& placing);
 
 /// Materials with their textures in the pack; what glTF does not hold of an MTL is told in `warnings`.
 void add_fresh_materials(const Model& model, Json& json, GltfPack& pack, std::vector<std::string>& warnings);

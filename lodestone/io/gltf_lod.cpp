@@ -4,24 +4,63 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "lodestone/math/vec.h"
 
 namespace lodestone::io {
 
-bool has_odd_transform(const Json& node) {
-  double q[4], m[16];
-  const Result<bool> rotation = numbers_member(node, "rotation", q, {}), matrix = numbers_member(node, "matrix", m, {});
-  if (rotation && *rotation) {
-    if (std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) > 1e-3) return true;
+namespace {
+
+struct Columns {
+  Vec3d x, y, z;
+  bool projects = false;
+};
+
+std::optional<Columns> matrix_columns(const Json& node) {
+  double m[16];
+  const Result<bool> matrix = numbers_member(node, "matrix", m, {});
+  if (!matrix || !*matrix) return std::nullopt;
+  const bool projects = m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1;
+  return Columns{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, projects};
+}
+
+bool has_odd_rotation(const Json& node) {
+  double q[4];
+  const Result<bool> rotation = numbers_member(node, "rotation", q, {});
+  if (!rotation || !*rotation) return false;
+  double sum = 0;
+  for (const double c : q) {
+    if (std::abs(c) > 1) return true;  // the format has this limit of its own, without any slack
+    sum += c * c;
   }
-  if (!matrix || !*matrix) return false;
+  return std::abs(sum - 1) > 1e-3;
+}
+
+// Validators rebuild a matrix from its parts in floats and allow 5e-5 in all: what is large or leans a little may
+// fail, and would fail once more at every level.
+bool may_fail_checks(const Json& node) {
+  const std::optional<Columns> c = matrix_columns(node);
+  if (!c) return false;
+  const auto leans = [](Vec3d a, Vec3d b) { return std::abs(dot(a, b)) > 2.5e-5 * std::min(length(a), length(b)); };
+  const double turned = std::max(
+      {std::abs(c->x.y), std::abs(c->x.z), std::abs(c->y.x), std::abs(c->y.z), std::abs(c->z.x), std::abs(c->z.y)});
+  const bool large = turned > 0 && std::max({length(c->x), length(c->y), length(c->z)}) > 200;
+  return large || leans(c->x, c->y) || leans(c->y, c->z) || leans(c->x, c->z);
+}
+
+}  // namespace
+
+bool has_odd_transform(const Json& node) {
+  if (has_odd_rotation(node)) return true;
+  const std::optional<Columns> c = matrix_columns(node);
+  if (!c) return false;
   for (const char* key : {"translation", "rotation", "scale"}) {
     if (node.contains(key)) return true;
   }
-  const Vec3d x{m[0], m[1], m[2]}, y{m[4], m[5], m[6]}, z{m[8], m[9], m[10]};
   const auto leans = [](Vec3d a, Vec3d b) { return std::abs(dot(a, b)) > 1e-4 * length(a) * length(b); };
-  return leans(x, y) || leans(y, z) || leans(x, z) || m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1;
+  const bool flat = !(std::abs(dot(c->x, cross(c->y, c->z))) > 0);
+  return flat || c->projects || leans(c->x, c->y) || leans(c->y, c->z) || leans(c->x, c->z);
 }
 
 namespace {
@@ -101,7 +140,8 @@ std::size_t choose_holder(Json& json, std::size_t node) {
   const Json* extensions = member(carrier, "extensions");
   const bool light = extensions != nullptr && extensions->contains("KHR_lights_punctual");
   const bool busy = !array_member(carrier, "children").empty() || carrier.contains("camera") || light;
-  if (!busy && !role.transform_animated && !role.joint && !has_odd_transform(carrier)) return node;
+  const bool odd = has_odd_transform(carrier) || may_fail_checks(carrier);
+  if (!busy && !role.transform_animated && !role.joint && !odd) return node;
   Json leaf = Json::object();
   const std::string name = string_member(carrier, "name");
   if (!name.empty()) leaf["name"] = name + "_mesh";
@@ -148,8 +188,8 @@ Json level_node(const Json& holder, std::size_t mesh, std::size_t level, const J
 
 }  // namespace
 
-std::vector<std::size_t> add_node_levels(Json& json, std::size_t node, const std::vector<std::size_t>& level_meshes,
-                                         const std::vector<double>& coverage, std::vector<std::string>& warnings) {
+NodeLevels add_node_levels(Json& json, std::size_t node, const std::vector<std::size_t>& level_meshes,
+                           const std::vector<double>& coverage, std::vector<std::string>& warnings) {
   const std::size_t holder = choose_holder(json, node);
   std::vector<std::size_t> ids;
   for (std::size_t k = 0; k < level_meshes.size(); ++k) {
@@ -170,7 +210,7 @@ std::vector<std::size_t> add_node_levels(Json& json, std::size_t node, const std
     }
   }
   move_weight_channels(json, node, holder, ids);
-  return ids;
+  return {holder, std::move(ids)};
 }
 
 void detach_weight_channels(Json& json, std::size_t node) {

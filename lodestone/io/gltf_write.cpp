@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <new>
@@ -53,6 +54,11 @@ bool is_moved(const Model& original, const Model& level, std::size_t instance) {
   return then.transform != now.transform || original.meshes[then.mesh].offset != level.meshes[now.mesh].offset;
 }
 
+// From the original's place there is a way to the level's, but from a flattened one to no other.
+bool can_be_placed(const Instance& original, const Instance& level) {
+  return original.transform == level.transform || std::abs(original.transform.determinant3()) > 0;
+}
+
 // Nodes of a document have children, skins and animations: its levels must lie in them as the original does.
 Result<void> check_placing(const Model& original, const Model& level, std::size_t number) {
   if (level.meshes.size() != original.meshes.size() || level.instances.size() != original.instances.size()) {
@@ -63,7 +69,8 @@ Result<void> check_placing(const Model& original, const Model& level, std::size_
   }
   for (std::size_t i = 0; i < original.instances.size(); ++i) {
     const bool same_mesh = level.instances[i].mesh == original.instances[i].mesh;
-    if (same_mesh && (original.document == nullptr || !is_moved(original, level, i))) continue;
+    const bool may_move = original.document == nullptr && can_be_placed(original.instances[i], level.instances[i]);
+    if (same_mesh && (may_move || !is_moved(original, level, i))) continue;
     return fail(ErrorCode::bad_argument,
                 fmt::format("instance {} of level {} is placed otherwise than the original's", i, number), {},
                 "give it the original's mesh, transform and Mesh::offset");
@@ -134,14 +141,20 @@ void keep_images(Writer& w) {
 
 // A transform that is no move, turn and scale stays, as anything else would draw another model.
 void tell_odd_transforms(Writer& w) {
+  constexpr std::size_t kTold = 3;
+  std::size_t found = 0;
   const Json& nodes = array_member(w.json, "nodes");
   for (std::size_t n = 0; n < nodes.size(); ++n) {
-    if (!has_odd_transform(nodes[n])) continue;
+    if (!has_odd_transform(nodes[n]) || ++found > kTold) continue;
     w.report.warnings.push_back(
         fmt::format("node {} has a transform that glTF does not allow (a rotation that is no unit quaternion, or a "
-                    "matrix that shears): kept as it is",
+                    "matrix that shears or flattens): kept as it is",
                     n));
   }
+  if (found <= kTold) return;
+  const std::size_t others = found - kTold;
+  w.report.warnings.push_back(
+      fmt::format("{} other node{} such transforms: kept as they are", others, others == 1 ? " has" : "s have"));
 }
 
 void begin_from_document(Writer& w) {
@@ -263,13 +276,24 @@ Result<std::vector<std::size_t>> write_level_meshes(Writer& w, std::size_t level
   return out;
 }
 
-// A new surface may have an offset of its own, which is the node's part.
-void place_moved_levels(Writer& w, std::size_t instance, const std::vector<std::size_t>& nodes) {
-  for (std::size_t k = 0; w.document == nullptr && k < nodes.size(); ++k) {
+// Where a level lies as seen from the node of the original.
+Mat4d seen_from(const Model& original, const Model& level, std::size_t instance) {
+  const Instance &then = original.instances[instance], &now = level.instances[instance];
+  const Vec3d from = original.meshes[then.mesh].offset, to = level.meshes[now.mesh].offset;
+  if (then.transform == now.transform) return Mat4d::translation(to - from);
+  const Mat4d base = fresh_placing(original, instance);
+  const Mat4d back = base.inverse3() * Mat4d::translation({-base.m[12], -base.m[13], -base.m[14]});
+  return back * fresh_placing(level, instance);
+}
+
+// A new surface may have an offset of its own, which is the node's part; a leaf lies in its original's node already.
+void place_moved_levels(Writer& w, std::size_t instance, const NodeLevels& nodes) {
+  const bool inside = nodes.holder != w.instance_nodes[instance];
+  for (std::size_t k = 0; w.document == nullptr && k < nodes.levels.size(); ++k) {
     const Model& level = w.levels[k + 1].model;
     if (!is_moved(w.original, level, instance)) continue;
-    const Instance& placing = level.instances[instance];
-    place_fresh_node(w.json["nodes"][nodes[k]], placing, level.meshes[placing.mesh]);
+    place_fresh_node(w.json["nodes"][nodes.levels[k]],
+                     inside ? seen_from(w.original, level, instance) : fresh_placing(level, instance));
   }
 }
 
@@ -291,7 +315,7 @@ Result<void> write_levels(Writer& w, const Task& task) {
     std::vector<std::size_t> of_node;
     for (const auto& level : meshes) of_node.push_back(level[w.original.instances[i].mesh]);
     const bool told = i < w.options.screen_coverage.size();
-    const std::vector<std::size_t> nodes = add_node_levels(
+    const NodeLevels nodes = add_node_levels(
         w.json, node, of_node, told ? w.options.screen_coverage[i] : std::vector<double>{}, w.report.warnings);
     place_moved_levels(w, i, nodes);
   }

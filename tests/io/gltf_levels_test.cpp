@@ -269,8 +269,17 @@ TEST_F(GltfLevels, levels_with_an_offset_of_their_own_lie_where_they_should) {
   ladder.levels.resize(2);
   ladder.original = make_model(original);
   ladder.levels[1].model = make_model(coarse);
-  for (const Mat4d& placing : {Mat4d{}, Mat4d::translation({5, 6, 7}) * Mat4d::scale({2, 2, 2})}) {
-    ladder.original.instances[0].transform = ladder.levels[1].model.instances[0].transform = placing;
+  Mat4d shear = Mat4d::translation({5, 6, 7}) * Mat4d::scale({2, 1, 4}), flat = shear;
+  shear.m[4] = 0.5;
+  flat.m[10] = 0;
+  const Mat4d both[][2] = {{{}, {}},
+                           {Mat4d::translation({5, 6, 7}) * Mat4d::scale({2, 2, 2}), Mat4d::scale({2, 2, 2})},
+                           {shear, shear},
+                           {shear, Mat4d::scale({4, 4, 4})},
+                           {flat, flat}};
+  for (const auto& [placing, level_placing] : both) {
+    ladder.original.instances[0].transform = placing;
+    ladder.levels[1].model.instances[0].transform = level_placing;
     for (const char* name : {"out.glb", "out.gltf"}) {
       ASSERT_TRUE(write_gltf(ladder, folder_ / name, {}));
       for (std::size_t level = 0; level < 2; ++level) {
@@ -282,6 +291,8 @@ TEST_F(GltfLevels, levels_with_an_offset_of_their_own_lie_where_they_should) {
       }
     }
   }
+  ladder.levels[1].model.instances[0].transform = shear;
+  EXPECT_FALSE(write_gltf(ladder, folder_ / "out.glb", {})) << "a flattened node cannot hold what is not flat";
 }
 
 TEST_F(GltfLevels, levels_of_a_document_must_be_placed_as_the_original_is) {

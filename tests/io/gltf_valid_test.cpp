@@ -312,6 +312,40 @@ TEST_F(GltfValid, levels_do_not_repeat_transforms_that_the_format_forbids) {
   EXPECT_EQ(having("matrix"), 1 + 3) << "a matrix that is one of moves, turns and scales is copied as ever";
 }
 
+TEST_F(GltfValid, rotations_above_one_flat_and_huge_matrices_stand_in_one_node_each) {
+  GltfBuilder b;
+  b.json["meshes"] = {{{"primitives", {b.sheet(4, 0)}}}};
+  b.json["nodes"] = {{{"mesh", 0}, {"rotation", {0, 0, 0, 1.0000001}}},
+                     {{"mesh", 0}, {"rotation", {0, -1.0003, 0, 0}}},
+                     {{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}}},
+                     {{"mesh", 0}, {"matrix", {100, 0, 0, 0, 0.005, 100, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}},
+                     {{"mesh", 0}, {"rotation", {0, 0, 0, 1}}}};
+  b.json["scenes"][0]["nodes"] = {0, 1, 2, 3, 4};
+  const Json nodes = ladder_of(b).json["nodes"];
+  const auto having = [&](const char* key) {
+    return std::count_if(nodes.begin(), nodes.end(), [&](const Json& n) { return n.contains(key); });
+  };
+  EXPECT_EQ(having("rotation"), 2 + 3) << "levels copy a good one";
+  EXPECT_EQ(having("matrix"), 2);
+  EXPECT_TRUE(told("node 0 has a transform") && told("node 1 has a transform") && told("node 2 has a transform"));
+  EXPECT_FALSE(told("node 3 has a transform")) << "rounding: not worth a word";
+}
+
+TEST_F(GltfValid, of_many_forbidden_transforms_a_few_are_told_and_the_others_counted) {
+  GltfBuilder b;
+  b.json["meshes"] = {{{"primitives", {b.sheet(4, 0)}}}};
+  Json scene = Json::array();
+  for (std::size_t n = 0; n < 1000; ++n) {
+    scene.push_back(n);
+    b.json["nodes"].push_back({{"mesh", 0}, {"rotation", {0, 0, 0, 2}}});
+  }
+  b.json["scenes"][0]["nodes"] = scene;
+  ladder_of(b);
+  EXPECT_EQ(warnings_.size(), 4U);
+  EXPECT_TRUE(told("node 2 has a transform"));
+  EXPECT_TRUE(told("997 other nodes"));
+}
+
 TEST_F(GltfValid, names_lengths_and_types_against_the_format_are_mended_at_all_levels) {
   GltfBuilder b;
   Json sheet = b.sheet(4, 0);

@@ -198,8 +198,13 @@ def busy_nodes(g):
 
 
 def odd_transforms(g):
-    """A rotation that is no unit quaternion, and a matrix that shears."""
+    """Rotations that are no unit quaternion or have a component just above one; matrices that shear, flatten, are large."""
     g.draw(g.sheet(), rotation=[0, 0, 0.5, 0.5])
+    for component in (1.0003, 1.0000001, -1.0003):
+        g.draw(g.sheet(z=component), rotation=[0, 0, 0, component])
+    g.draw(g.sheet(z=2.0), matrix=[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1])
+    g.draw(g.sheet(z=3.0), matrix=[100, 0, 0, 0, 0.005, 100, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])
+    g.draw(g.sheet(z=4.0), matrix=[800, 600, 0, 0, -600, 800, 0, 0, 0, 0, 1000, 0, 0, 0, 0, 1])
     g.draw(g.sheet(z=1.0), matrix=[1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])
 
 
