@@ -8,9 +8,9 @@
 #include <cerrno>
 #include <system_error>
 
-#include "app/foreign.h"
-#include "app/json.h"
-#include "app/text.h"
+#include "app/children/foreign.h"
+#include "app/output/json.h"
+#include "app/output/text.h"
 #include "lodestone/base/file.h"
 #include "lodestone/io/content.h"
 #include "lodestone/io/read.h"

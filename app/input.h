@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "app/command_line.h"
-#include "app/console.h"
-#include "app/volume_input.h"
+#include "app/children/volume_input.h"
+#include "app/options/command_line.h"
+#include "app/output/console.h"
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
 #include "lodestone/core/model.h"

@@ -8,9 +8,9 @@
 #include <csignal>
 #include <string>
 
-#include "app/child_process.h"
-#include "app/terminal.h"
-#include "app/text.h"
+#include "app/children/child_process.h"
+#include "app/output/terminal.h"
+#include "app/output/text.h"
 #include "lodestone/base/check.h"
 
 namespace lodestone::app {

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "app/command_line.h"
-#include "app/console.h"
-#include "app/foreign.h"
-#include "app/help.h"
+#include "app/children/foreign.h"
 #include "app/interrupt.h"
-#include "app/suggest.h"
-#include "app/text.h"
+#include "app/options/command_line.h"
+#include "app/options/suggest.h"
+#include "app/output/console.h"
+#include "app/output/help.h"
+#include "app/output/text.h"
 #include "lodestone/base/parallel.h"
 
 namespace lodestone::app {

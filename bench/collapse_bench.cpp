@@ -8,7 +8,7 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/io/read.h"
-#include "lodestone/simplify/edge_collapse.h"
+#include "lodestone/simplify/collapse/edge_collapse.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 
 #include "bench/register.h"
 #include "lodestone/base/parallel.h"
-#include "lodestone/io/image_decode.h"
+#include "lodestone/io/images/decode.h"
 #include "lodestone/io/read.h"
 #include "lodestone/render/render.h"
 

@@ -1,4 +1,4 @@
-# `cmake --install`: headers and libraries of every room, the command, find_package(lodestone) and pkg-config.
+# `cmake --install`: headers and libraries of every module, the command, find_package(lodestone) and pkg-config.
 include(CMakePackageConfigHelpers)
 
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/lodestone)
@@ -9,13 +9,13 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/lodestone-config-version.
 install(FILES ${PROJECT_BINARY_DIR}/lodestone-config.cmake ${PROJECT_BINARY_DIR}/lodestone-config-version.cmake
   DESTINATION ${config_dir})
 
-# pkg-config. The rooms are static libraries, so all they need is listed, upper rooms before lower ones.
+# pkg-config. The modules are static libraries, so all they need is listed, upper modules before lower ones.
 set(pc_libs "")
-get_property(rooms GLOBAL PROPERTY LODESTONE_ROOMS)  # in the order of lodestone/CMakeLists.txt: lower ones first
-foreach(room IN LISTS rooms)
-  get_target_property(type lodestone_${room} TYPE)
+get_property(modules GLOBAL PROPERTY LODESTONE_MODULES)  # in the order of lodestone/CMakeLists.txt: lower ones first
+foreach(module IN LISTS modules)
+  get_target_property(type lodestone_${module} TYPE)
   if(type STREQUAL "STATIC_LIBRARY")
-    string(PREPEND pc_libs "-llodestone_${room} ")
+    string(PREPEND pc_libs "-llodestone_${module} ")
   endif()
 endforeach()
 set(pc_requires "fmt zlib libpng libturbojpeg libwebp")

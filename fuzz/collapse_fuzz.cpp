@@ -5,7 +5,7 @@
 #include "lodestone/base/check.h"
 #include "lodestone/core/topology.h"
 #include "lodestone/core/validate.h"
-#include "lodestone/simplify/edge_collapse.h"
+#include "lodestone/simplify/collapse/edge_collapse.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace lodestone;

@@ -5,7 +5,7 @@
 
 #include "lodestone/base/check.h"
 #include "lodestone/core/validate.h"
-#include "lodestone/io/gltf_read.h"
+#include "lodestone/io/gltf/read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto model = lodestone::io::read_gltf_bytes(std::string(reinterpret_cast<const char*>(data), size), "fuzz.glb");

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "lodestone/base/check.h"
-#include "lodestone/io/image_decode.h"
+#include "lodestone/io/images/decode.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   lodestone::Image image;

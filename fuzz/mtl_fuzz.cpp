@@ -9,8 +9,8 @@
 
 #include "lodestone/base/check.h"
 #include "lodestone/core/material.h"
-#include "lodestone/io/mtl_detail.h"
-#include "lodestone/io/mtl_images_detail.h"
+#include "lodestone/io/plain/mtl_detail.h"
+#include "lodestone/io/plain/mtl_images_detail.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace lodestone;

@@ -5,7 +5,7 @@
 
 #include "lodestone/base/check.h"
 #include "lodestone/core/validate.h"
-#include "lodestone/io/off.h"
+#include "lodestone/io/plain/off.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto model = lodestone::io::read_off(std::as_bytes(std::span(data, size)), "fuzz.off");

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "lodestone/base/check.h"
-#include "lodestone/io/points.h"
+#include "lodestone/io/points/read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;

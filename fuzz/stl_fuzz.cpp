@@ -5,7 +5,7 @@
 
 #include "lodestone/base/check.h"
 #include "lodestone/core/validate.h"
-#include "lodestone/io/stl.h"
+#include "lodestone/io/plain/stl.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto model = lodestone::io::read_stl(std::as_bytes(std::span(data, size)), "fuzz.stl");

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "app/noise.h"
+#include "app/samples/noise.h"
 #include "lodestone/base/units.h"
 #include "lodestone/core/adjacency.h"
 #include "lodestone/core/model.h"

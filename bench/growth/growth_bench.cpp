@@ -9,10 +9,10 @@
 #include <fstream>
 #include <string>
 
-#include "app/samples.h"
+#include "app/samples/samples.h"
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/stopwatch.h"
-#include "lodestone/simplify/edge_collapse.h"
+#include "lodestone/simplify/collapse/edge_collapse.h"
 
 namespace {
 

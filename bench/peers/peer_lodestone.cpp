@@ -1,6 +1,6 @@
 #include "bench/peers/peer.h"
 #include "lodestone/base/parallel.h"
-#include "lodestone/simplify/edge_collapse.h"
+#include "lodestone/simplify/collapse/edge_collapse.h"
 
 namespace {
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "lodestone/chain/build_ladder.h"
+#include "lodestone/chain/ladder/build_ladder.h"
 #include "lodestone/io/read.h"
 
 int main(int argc, char** argv) {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "lodestone/base/file.h"
-#include "lodestone/io/image_file_detail.h"
+#include "lodestone/io/images/file_detail.h"
 #include "lodestone/io/read_detail.h"
 
 #ifdef LODESTONE_WITH_ASSIMP

@@ -14,11 +14,11 @@
 #include "lodestone/io/assimp.h"
 #include "lodestone/io/content.h"
 #include "lodestone/io/draco.h"
-#include "lodestone/io/gltf_read.h"
-#include "lodestone/io/obj.h"
-#include "lodestone/io/off.h"
-#include "lodestone/io/ply.h"
-#include "lodestone/io/stl.h"
+#include "lodestone/io/gltf/read.h"
+#include "lodestone/io/plain/obj.h"
+#include "lodestone/io/plain/off.h"
+#include "lodestone/io/plain/ply.h"
+#include "lodestone/io/plain/stl.h"
 #include "lodestone/io/text_reader_detail.h"
 
 namespace lodestone::io {

@@ -13,12 +13,12 @@
 #include "lodestone/base/file.h"
 #include "lodestone/base/text.h"
 #include "lodestone/core/validate.h"
-#include "lodestone/io/gltf_write.h"
-#include "lodestone/io/obj_write.h"
-#include "lodestone/io/off_write.h"
-#include "lodestone/io/ply_write.h"
+#include "lodestone/io/gltf/write.h"
+#include "lodestone/io/plain/obj_write.h"
+#include "lodestone/io/plain/off_write.h"
+#include "lodestone/io/plain/ply_write.h"
+#include "lodestone/io/plain/stl_write.h"
 #include "lodestone/io/shown_colors_detail.h"
-#include "lodestone/io/stl_write.h"
 #include "lodestone/io/text_reader_detail.h"
 
 namespace lodestone::io {

@@ -3,7 +3,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
-#include "lodestone/chain/build_ladder.h"
+#include "lodestone/chain/ladder/build_ladder.h"
 #include "lodestone/io/write.h"
 #include "lodestone/report/html_report.h"
 

@@ -1,7 +1,7 @@
 #include "lodestone/report/level_pictures.h"
 
 #include "lodestone/core/validate.h"
-#include "lodestone/io/image_encode.h"
+#include "lodestone/io/images/encode.h"
 #include "lodestone/measure/heat.h"
 #include "lodestone/render/render.h"
 

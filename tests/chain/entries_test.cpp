@@ -5,14 +5,14 @@
 #include <utility>
 #include <vector>
 
-#include "lodestone/chain/boolean.h"
-#include "lodestone/chain/build_ladder.h"
-#include "lodestone/chain/influence.h"
-#include "lodestone/chain/remesh.h"
-#include "lodestone/chain/scan_surface.h"
-#include "lodestone/chain/solid.h"
-#include "lodestone/chain/volume_surface.h"
-#include "lodestone/chain/voxel_ladder.h"
+#include "lodestone/chain/ladder/build_ladder.h"
+#include "lodestone/chain/ladder/influence.h"
+#include "lodestone/chain/scans/scan_surface.h"
+#include "lodestone/chain/voxels/boolean.h"
+#include "lodestone/chain/voxels/remesh.h"
+#include "lodestone/chain/voxels/solid.h"
+#include "lodestone/chain/voxels/volume_surface.h"
+#include "lodestone/chain/voxels/voxel_ladder.h"
 #include "tests/support/broken.h"
 
 namespace lodestone::chain {

@@ -1,8 +1,10 @@
 """Outputs appear whole or not at all, whatever stops the run."""
+import re
 import resource
 import signal
 import subprocess
 import time
+from pathlib import Path
 
 from support import Scratch, lod_path
 
@@ -106,9 +108,16 @@ class Atomic(Scratch):
 class Interrupt(Scratch):
     statue_triangles = 600000
 
+    @staticmethod
+    def handles(pid, number):
+        caught = re.search(r"^SigCgt:\s*([0-9a-f]+)", Path(f"/proc/{pid}/status").read_text(), re.M)
+        return int(caught[1], 16) >> (number - 1) & 1
+
     def stop(self, number, wait, *words):
         process = subprocess.Popen([lod_path(), *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         time.sleep(wait)
+        while process.poll() is None and not self.handles(process.pid, number):  # on a busy machine it may not have begun
+            time.sleep(0.01)
         self.assertIsNone(process.poll(), "ended before it could be stopped")
         process.send_signal(number)
         out, err = process.communicate(timeout=60)

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "lodestone/io/image_encode.h"
+#include "lodestone/io/images/encode.h"
 #include "lodestone/io/write.h"
 #include "support/broken.h"
 #include "support/folder.h"

@@ -10,7 +10,7 @@
 #include "lodestone/io/read.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/measure/distance.h"
-#include "lodestone/simplify/edge_collapse.h"
+#include "lodestone/simplify/collapse/edge_collapse.h"
 #include "lodestone/spatial/bvh.h"
 
 namespace lodestone {

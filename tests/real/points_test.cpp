@@ -1,5 +1,5 @@
 // Reading the shared point clouds: counts as their table tells them, or a line that says why not.
-#include "lodestone/io/points.h"
+#include "lodestone/io/points/read.h"
 
 #include <gtest/gtest.h>
 

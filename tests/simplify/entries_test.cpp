@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "lodestone/simplify/edge_collapse.h"
-#include "lodestone/simplify/thin_parts.h"
+#include "lodestone/simplify/collapse/edge_collapse.h"
+#include "lodestone/simplify/prune/thin_parts.h"
 #include "tests/support/broken.h"
 
 namespace lodestone::simplify {

@@ -1,4 +1,4 @@
-// Small meshes with known properties, for tests of every room.
+// Small meshes with known properties, for tests of every module.
 #pragma once
 
 #include <functional>

@@ -16,7 +16,7 @@ class Check(unittest.TestCase):
         shutil.copy(TOP / "tools/check", self.root / "tools")
         self.bin = self.root / "bin"
         self.bin.mkdir()
-        for name in ("tools/check_floors", "tools/format", "tools/fuzz", "bin/cmake", "bin/ctest"):
+        for name in ("tools/check_layers", "tools/format", "tools/fuzz", "bin/cmake", "bin/ctest"):
             self.script(name, 0)
 
     def script(self, name, status):
@@ -32,19 +32,19 @@ class Check(unittest.TestCase):
         return done, log.read_text() if log.exists() else ""
 
     def test_all_steps_run_in_order(self):
-        done, log = self.run_check("format", "floors", "fuzz")
+        done, log = self.run_check("format", "layers", "fuzz")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(log.split("\n")[:2], ["tools/format ", "tools/check_floors "])
+        self.assertEqual(log.split("\n")[:2], ["tools/format ", "tools/check_layers "])
         self.assertIn("tools/fuzz 20", log)
         self.assertIn("all passed", done.stdout)
 
     def test_one_failing_step_fails_all_and_is_named(self):
-        self.script("tools/check_floors", 1)
-        for steps in (["floors", "format"], ["format", "floors"], ["floors"]):
+        self.script("tools/check_layers", 1)
+        for steps in (["layers", "format"], ["format", "layers"], ["layers"]):
             done, _ = self.run_check(*steps)
             self.assertNotEqual(done.returncode, 0)
             self.assertNotIn("all passed", done.stdout)
-            self.assertIn("floors failed", done.stderr)
+            self.assertIn("layers failed", done.stderr)
 
     def test_failing_build_or_tests_fail_a_step(self):
         for tool in ("bin/cmake", "bin/ctest"):
@@ -63,7 +63,7 @@ class Check(unittest.TestCase):
                     self.assertIn(f"step_{step}()", text)
 
     def test_unknown_step_or_none_prints_the_steps(self):
-        for steps in (["nonsense"], [], ["floors", "nonsense"]):
+        for steps in (["nonsense"], [], ["layers", "nonsense"]):
             done, log = self.run_check(*steps)
             self.assertEqual((done.returncode, log), (2, ""))
             self.assertIn("asan", done.stderr)

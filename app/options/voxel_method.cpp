@@ -1,0 +1,65 @@
+#include "app/options/voxel_method.h"
+
+#include <fmt/format.h>
+
+#include "app/options/voxel_options.h"
+
+namespace lodestone::app {
+
+OptionGroup voxel_method_group() {
+  OptionGroup group{"Levels by voxels",
+                    {{"--method",
+                      "",
+                      "M",
+                      "edge-collapse",
+                      "",
+                      "edge-collapse, or voxel: each level a new closed surface from one solid, whatever the input",
+                      {"edge-collapse", "voxel"},
+                      Completion::choices},
+                     {"--resolution",
+                      "",
+                      "N",
+                      "",
+                      "voxels",
+                      "with --then-collapse: along the longest side of the surface that is collapsed (without: by the "
+                      "first level)",
+                      {},
+                      Completion::none}}};
+  for (const OptionSpec& option : solid_group().options) {
+    if (option.name != "--close") group.options.push_back(option);
+  }
+  for (const OptionSpec& option : level_group().options) group.options.push_back(option);
+  for (const OptionSpec& option : baked_group().options) group.options.push_back(option);
+  return group;
+}
+
+Result<std::optional<VoxelMethod>> voxel_method(const Arguments& arguments) {
+  const bool voxel = arguments.text("--method") == "voxel";
+  if (!voxel) {
+    for (const OptionSpec& option : voxel_method_group().options) {
+      if (option.name == "--method" || !arguments.has(option.name)) continue;
+      return fail(ErrorCode::bad_argument, fmt::format("{} is for --method voxel", option.name), {},
+                  "add --method voxel");
+    }
+    return std::optional<VoxelMethod>();
+  }
+  VoxelMethod method;
+  method.ladder.then_collapse = arguments.has("--then-collapse");
+  if (arguments.has("--resolution")) {
+    if (!method.ladder.then_collapse) {
+      return fail(ErrorCode::bad_argument, "--resolution is for --then-collapse: levels take theirs from the targets");
+    }
+    const Result<std::uint32_t> resolution = resolution_of(arguments);
+    if (!resolution) return fail(resolution.error());
+    method.ladder.resolution = *resolution;
+  }
+  const Result<chain::VoxelOptions> options = voxel_options(arguments, {}, {});
+  if (!options) return fail(options.error());
+  method.ladder.voxel = *options;
+  const Result<BakePlan> bake = bake_plan(arguments);
+  if (!bake) return fail(bake.error());
+  method.bake = *bake;
+  return std::optional<VoxelMethod>(method);
+}
+
+}  // namespace lodestone::app

@@ -1,0 +1,110 @@
+// CollapsePlan: one edge-collapse run on every mesh of a model, and the vanishing of thin parts where it is asked for,
+// merged into one order, from which any level can be cut.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lodestone/base/result.h"
+#include "lodestone/base/task.h"
+#include "lodestone/chain/ladder/effort.h"
+#include "lodestone/chain/ladder/influence.h"
+#include "lodestone/core/collapse_log.h"
+#include "lodestone/core/model.h"
+#include "lodestone/measure/distance.h"
+#include "lodestone/simplify/collapse/edge_collapse.h"
+#include "lodestone/simplify/fit/target.h"
+#include "lodestone/simplify/prune/thin_parts.h"
+
+namespace lodestone::chain::detail {
+
+/// What levels are shaped to, one a mesh, made when it is needed.
+struct FitTargets {
+  std::vector<std::unique_ptr<simplify::FitTarget>> targets;
+  std::vector<std::optional<measure::Reference>> references;  ///< of those that are shaped to a goal
+};
+
+class CollapsePlan {
+ public:
+  /// Collapses every drawn mesh as far as `smallest` drawn triangles may need (1 = as far as it goes). `original` must
+  /// outlive the plan. Errors: empty, bad_argument (the influence does not fit the model), cancelled.
+  static Result<CollapsePlan> create(const Model& original, std::size_t smallest, const Influence& influence,
+                                     Task task);
+
+  /// Number of merged steps: collapses, and parts that vanish.
+  std::size_t size() const { return steps_.size(); }
+  /// Drawn triangles after the first `count` steps. O(1).
+  std::size_t triangles_after(std::size_t count) const { return drawn_after_[count]; }
+  /// Drawn parts that have vanished after the first `count` steps. O(count).
+  std::size_t vanished_after(std::size_t count) const;
+  /// The shortest prefix that draws at most `triangles`; size() if none does. O(log n).
+  std::size_t prefix_for(std::size_t triangles) const;
+  /// The model after a prefix; documents, instances and materials shared with the original. O(model).
+  Result<Model> model_after(std::size_t count, Task task) const;
+
+  /// As model_after(), with every mesh that allows it shaped by its own measured error (shape_level()): those that are
+  /// drawn without being stretched, and of which no part vanishes and no triangle must stay. `targets` keeps what was
+  /// prepared for the next call; of this plan, empty at first.
+  /// `goal`: an error that is to hold, world space, with as few triangles as possible; 0 = as small as it gets with
+  /// those of the prefix.
+  Result<Model> shaped_after(std::size_t count, Effort effort, double goal, FitTargets& targets, Task task) const;
+
+  /// Whether any mesh allows it. O(triangles).
+  bool can_be_shaped() const;
+
+  /// Whether parts may vanish.
+  bool prunes() const { return prunes_; }
+  const simplify::LockCounts& locked() const { return locked_; }
+  /// Why the plan ends where it ends, in plain words.
+  std::string why_it_ends() const;
+
+ private:
+  // The next collapse of a mesh, or its next part that vanishes: the mesh's number, and a bit.
+  class Step {
+   public:
+    Step(std::uint32_t mesh, bool vanishes) : bits_(mesh << 1 | (vanishes ? 1U : 0U)) {}
+    std::uint32_t mesh() const { return bits_ >> 1; }
+    bool vanishes() const { return (bits_ & 1U) != 0; }
+
+   private:
+    std::uint32_t bits_;
+  };
+  // How far the steps of one mesh have come.
+  struct Progress {
+    std::size_t collapses = 0, vanishings = 0;
+  };
+
+  const Mesh& mesh(std::size_t m) const { return working_.empty() ? original_->meshes[m] : working_[m]; }
+  Result<void> plan_mesh(std::size_t m, std::size_t target, const Influence& influence, VertexInfluence told,
+                         const Task& task);
+  void merge();
+  void count_triangles();
+  std::size_t drawn_parts() const;
+  std::vector<Progress> progress_after(std::size_t count) const;
+  Result<Mesh> mesh_after(std::size_t m, const Progress& progress, double error, const Task& task) const;
+  void finish(Mesh& mesh) const;
+  bool can_be_shaped(std::size_t m) const;
+  Result<Mesh> shaped(std::size_t m, Mesh plain, Effort effort, double goal, FitTargets& targets,
+                      const Task& task) const;
+
+  const Model* original_ = nullptr;
+  std::vector<Mesh> working_;        // the meshes that the logs are about, where they are not the original's
+  std::vector<Mat4d> placings_;      // one a mesh: where its errors are judged
+  std::vector<std::uint32_t> uses_;  // how often each mesh is drawn
+  std::vector<simplify::EdgeCollapseOptions> options_;  // one a mesh, of the run that made its log
+  std::vector<CollapseLog> logs_;                       // one a mesh; empty for a mesh that is not drawn
+  std::vector<simplify::ThinParts> thin_;               // one a mesh; empty unless parts may vanish
+  std::vector<std::vector<std::uint8_t>> untouched_;    // triangles of each mesh that must not change; empty = none
+  std::vector<Step> steps_;
+  std::vector<std::size_t> drawn_after_;  // size() + 1 entries, never rising
+  simplify::LockCounts locked_;
+  bool prunes_ = false, keep_area_ = false;
+  std::size_t max_skin_influences_ = 0;
+  Tangents tangents_ = Tangents::interpolated;
+};
+
+}  // namespace lodestone::chain::detail

@@ -1,0 +1,158 @@
+// What users tell of a model (spheres, a weight attribute, ranges of triangles, names) becomes one weight and one lock
+// a vertex, and one mark a triangle that must not change. Of several opinions the largest weight counts, and a lock
+// wins; a mesh that is drawn several times obeys all its instances.
+#include "lodestone/chain/ladder/influence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "lodestone/core/validate.h"
+
+namespace lodestone::chain {
+
+namespace {
+
+const AttributeStream* weight_stream(const Mesh& mesh, const std::string& name) {
+  const auto found = std::find_if(mesh.attributes.begin(), mesh.attributes.end(), [&](const AttributeStream& s) {
+    return s.components == 1 && (s.name == name || s.name == "_" + name);
+  });
+  return found == mesh.attributes.end() ? nullptr : &*found;
+}
+
+double value_at(const AttributeStream& stream, std::size_t wedge) {
+  return std::visit([&](const auto& values) { return static_cast<double>(values[wedge]); }, stream.values);
+}
+
+std::string names_of(const Model& model) {
+  std::vector<std::string> names;
+  for (const Mesh& mesh : model.meshes) {
+    for (const AttributeStream& s : mesh.attributes) {
+      if (s.components == 1 && std::find(names.begin(), names.end(), s.name) == names.end()) names.push_back(s.name);
+    }
+  }
+  return names.empty() ? "the model has no attribute of one component"
+                       : fmt::format("these have one component: {}", fmt::join(names, ", "));
+}
+
+// Of several wedges at a vertex the largest value counts.
+Result<void> add_attribute(const Mesh& mesh, const AttributeStream& stream, std::vector<float>& weights) {
+  std::vector<float> most(mesh.vertex_count(), 0);
+  for (std::uint32_t w = 0; w < mesh.wedge_count(); ++w) {
+    const double value = value_at(stream, w);
+    if (!(value >= 0)) {
+      return fail(ErrorCode::bad_argument, fmt::format("attribute '{}' holds {}", stream.name, value), mesh.name,
+                  "weights are 0 or more");
+    }
+    float& at = most[mesh.vertex_of(w)];
+    at = std::max(at, static_cast<float>(std::min(value, 1e30)));
+  }
+  weights = std::move(most);
+  return {};
+}
+
+bool holds(const InfluenceSphere& s, Vec3d p) { return length_sq(p - s.center) <= s.radius * s.radius; }
+
+void add_spheres(const Model& model, std::size_t mesh_index, const std::vector<InfluenceSphere>& spheres,
+                 VertexInfluence& out) {
+  const Mesh& mesh = model.meshes[mesh_index];
+  std::vector<float> inside(mesh.vertex_count(), -1);
+  out.locked.resize(mesh.vertex_count(), 0);
+  for (const Instance& instance : model.instances) {
+    if (instance.mesh != mesh_index) continue;
+    for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+      const Vec3d p = instance.transform.point(mesh.position(v));
+      for (const InfluenceSphere& s : spheres) {
+        if (!holds(s, p)) continue;
+        if (s.locked) out.locked[v] = 1;
+        if (!s.locked) inside[v] = std::max(inside[v], static_cast<float>(std::min(s.weight, 1e30)));
+      }
+    }
+  }
+  for (std::size_t v = 0; v < inside.size(); ++v) {
+    if (inside[v] >= 0) out.weights[v] = inside[v];
+  }
+}
+
+}  // namespace
+
+Result<std::vector<VertexInfluence>> vertex_influences(const Model& model, const Influence& influence) {
+  if (const Result<void> ok = validate(model); !ok) return fail(ok.error());
+  std::vector<VertexInfluence> out(model.meshes.size());
+  const Result<std::vector<std::vector<std::uint8_t>>> untouched = untouched_triangles(model, influence);
+  if (!untouched) return fail(untouched.error());
+  for (std::size_t m = 0; m < untouched->size(); ++m) {
+    out[m].locked = vertices_of_triangles(model.meshes[m], (*untouched)[m]);
+  }
+  if (influence.spheres.empty() && influence.weight_attribute.empty()) return out;
+  bool found = influence.weight_attribute.empty();
+  for (std::size_t m = 0; m < model.meshes.size(); ++m) {
+    const Mesh& mesh = model.meshes[m];
+    out[m].weights.assign(mesh.vertex_count(), 1);
+    if (!influence.weight_attribute.empty()) {
+      if (const AttributeStream* stream = weight_stream(mesh, influence.weight_attribute); stream != nullptr) {
+        found = true;
+        if (const Result<void> ok = add_attribute(mesh, *stream, out[m].weights); !ok) return fail(ok.error());
+      }
+    }
+    if (!influence.spheres.empty()) add_spheres(model, m, influence.spheres, out[m]);
+    // Where nothing weighs more, there are no weights: levels can be shaped as without them.
+    const std::vector<float>& weights = out[m].weights;
+    if (std::all_of(weights.begin(), weights.end(), [](float w) { return w == 1; })) out[m].weights.clear();
+  }
+  if (!found) {
+    return fail(ErrorCode::bad_argument, fmt::format("no mesh has an attribute '{}'", influence.weight_attribute), {},
+                names_of(model));
+  }
+  return out;
+}
+
+Result<std::vector<std::vector<std::uint8_t>>> untouched_triangles(const Model& model, const Influence& influence) {
+  std::vector<std::vector<std::uint8_t>> out;
+  if (influence.only.empty()) return out;
+  std::uint64_t all = 0;
+  for (const Mesh& mesh : model.meshes) all += mesh.triangles.size();
+  std::vector<std::uint8_t> untouched(static_cast<std::size_t>(all), 1);
+  for (const TriangleRange& range : influence.only) {
+    if (range.first > range.last || range.last >= all) {
+      return fail(ErrorCode::bad_argument, fmt::format("there are no triangles {} to {}", range.first, range.last), {},
+                  fmt::format("the model has {}, counted from 0", all));
+    }
+    std::fill(untouched.begin() + static_cast<std::ptrdiff_t>(range.first),
+              untouched.begin() + static_cast<std::ptrdiff_t>(range.last) + 1, std::uint8_t{0});
+  }
+  auto next = untouched.begin();
+  for (const Mesh& mesh : model.meshes) {
+    const auto end = next + static_cast<std::ptrdiff_t>(mesh.triangles.size());
+    out.emplace_back(next, end);
+    next = end;
+  }
+  return out;
+}
+
+std::vector<std::uint8_t> vertices_of_triangles(const Mesh& mesh, const std::vector<std::uint8_t>& marked) {
+  std::vector<std::uint8_t> out;
+  if (marked.empty()) return out;
+  out.assign(mesh.vertex_count(), 0);
+  for (std::size_t t = 0; t < marked.size(); ++t) {
+    if (marked[t] == 0) continue;
+    for (const std::uint32_t v : mesh.vertices_of(t)) out[v] = 1;
+  }
+  return out;
+}
+
+std::vector<std::size_t> empty_spheres(const Model& model, const std::vector<InfluenceSphere>& spheres) {
+  std::vector<std::size_t> empty(spheres.size());
+  std::iota(empty.begin(), empty.end(), std::size_t{0});
+  for (const Instance& instance : model.instances) {
+    const Mesh& mesh = model.meshes[instance.mesh];
+    for (std::uint32_t v = 0; v < mesh.vertex_count() && !empty.empty(); ++v) {
+      const Vec3d p = instance.transform.point(mesh.position(v));
+      std::erase_if(empty, [&](std::size_t s) { return holds(spheres[s], p); });
+    }
+  }
+  return empty;
+}
+
+}  // namespace lodestone::chain

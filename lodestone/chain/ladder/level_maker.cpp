@@ -1,0 +1,93 @@
+#include <utility>
+
+#include "lodestone/base/stopwatch.h"
+#include "lodestone/chain/ladder/level_error_detail.h"
+#include "lodestone/chain/ladder/level_maker_detail.h"
+
+namespace lodestone::chain::detail {
+
+using measure::Reference;
+
+namespace {
+
+// Where a few spots make the whole mean, it depends on how many samples hit them: four times as many are taken then.
+// The limit is a relative standard error of 1 % (that of independent samples; stratified ones do better).
+Result<measure::Distance> measure_steadily(const measure::Reference& reference, const Model& model,
+                                           const measure::DistanceOptions& options, const Task& task) {
+  Result<measure::Distance> d = reference.distance_to(model, options, task.part(0.5));
+  constexpr double kSteady = 0.01, kNothing = 1e-7;
+  if (!d || d->mean <= kNothing * d->diagonal) return d;
+  const double spread = d->rms / d->mean;
+  if (spread * spread - 1 <= kSteady * kSteady * static_cast<double>(d->samples)) return d;
+  measure::DistanceOptions more = options;
+  more.samples *= 4;
+  return reference.distance_to(model, more, task.part(0.5));
+}
+
+const char* method_of(Effort effort) {
+  if (effort == Effort::fast) return "edge collapse";
+  return effort == Effort::normal ? "edge collapse, weighted by its error" : "edge collapse, fitted by its error";
+}
+
+}  // namespace
+
+LevelMaker::LevelMaker(const CollapsePlan& plan, const Reference& reference, const measure::DistanceOptions& distance,
+                       Effort effort)
+    : plan_(plan),
+      reference_(reference),
+      distance_(of_valid(distance)),
+      effort_(plan.can_be_shaped() ? effort : Effort::fast) {}
+
+Result<Cut> LevelMaker::plain(std::size_t prefix, const Task& task) const {
+  Cut cut;
+  const Stopwatch making;
+  Result<Model> model = plan_.model_after(prefix, task.part(0.3));
+  if (!model) return fail(model.error());
+  cut.simplify_seconds = making.total();
+  return measured(std::move(cut), prefix, std::move(*model), Effort::fast, task.part(0.7));
+}
+
+Result<Cut> LevelMaker::shaped(std::size_t prefix, const Task& task, double goal) {
+  Result<Cut> cut = plain(prefix, task.part(effort_ == Effort::fast ? 1.0 : 0.2));
+  if (!cut || effort_ == Effort::fast || prefix == 0) return cut;
+  Cut shaping;
+  const Stopwatch making;
+  Result<Model> model = plan_.shaped_after(prefix, effort_, goal, targets_, task.part(0.6, "shaping"));
+  if (!model) return fail(model.error());
+  shaping.simplify_seconds = cut->simplify_seconds + making.total();
+  shaping.measure_seconds = cut->measure_seconds;
+  Result<Cut> made = measured(std::move(shaping), prefix, std::move(*model), effort_, task.part(0.2));
+  if (!made) return made;
+  if (is_better(*made, *cut, goal)) return made;
+  cut->simplify_seconds = made->simplify_seconds;
+  cut->measure_seconds = made->measure_seconds;
+  cut->level.seconds = cut->simplify_seconds + cut->measure_seconds;
+  return cut;
+}
+
+bool LevelMaker::is_better(const Cut& made, const Cut& plain, double goal) const {
+  constexpr double kMeanSlack = 1.01;
+  const LevelError &now = made.level.error, &then = plain.level.error;
+  if (made.level.triangles > plain.level.triangles) return false;
+  if (goal > 0 && made.level.triangles < plain.level.triangles) return now.measured_error <= goal;
+  const double slack = effort_ == Effort::normal ? kMeanSlack : 1;
+  const bool no_worse = now.measured_error <= then.measured_error && now.mean_error <= slack * then.mean_error;
+  return no_worse && (now.measured_error < then.measured_error || now.mean_error < then.mean_error);
+}
+
+Result<Cut> LevelMaker::measured(Cut cut, std::size_t prefix, Model model, Effort effort, const Task& task) const {
+  const Stopwatch measuring;
+  const Result<measure::Distance> d = measure_steadily(reference_, model, distance_, task);
+  if (!d) return fail(d.error());
+  cut.prefix = prefix;
+  cut.measure_seconds += measuring.total();
+  cut.level.triangles = drawn_triangles(model);
+  cut.level.vanished_parts = plan_.vanished_after(prefix);
+  cut.level.model = std::move(model);
+  cut.level.method = method_of(effort);
+  cut.level.seconds = cut.simplify_seconds + cut.measure_seconds;
+  cut.level.error = level_error(*d);
+  return cut;
+}
+
+}  // namespace lodestone::chain::detail

@@ -1,0 +1,137 @@
+#include "lodestone/chain/voxels/voxel_ladder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "lodestone/base/stopwatch.h"
+#include "lodestone/chain/ladder/ladder_detail.h"
+#include "lodestone/chain/ladder/level_error_detail.h"
+#include "lodestone/chain/voxels/voxel_search_detail.h"
+
+namespace lodestone::chain {
+
+using detail::VoxelCut;
+using detail::VoxelTarget;
+using measure::Reference;
+
+namespace {
+
+std::vector<VoxelTarget> targets_of(const LadderOptions& options, std::size_t drawn) {
+  std::vector<VoxelTarget> out;
+  for (const double error : options.errors) out.push_back({0, 0, error, false});
+  if (!out.empty()) return out;
+  for (const std::size_t count : detail::count_targets(options, drawn)) out.push_back({0, count, 0, false});
+  return out;
+}
+
+Result<Level> make_level(VoxelCut cut, const Model& original, double finer_error, const Reference& reference,
+                         const measure::DistanceOptions& distance, double& measure_seconds, const Task& task) {
+  Level level;
+  level.triangles = cut.mesh.triangles.size();
+  level.method = "voxels";
+  level.model = make_model(std::move(cut.mesh), original);
+  if (!cut.distance) {
+    const Stopwatch measuring;
+    Result<measure::Distance> d = reference.distance_to(level.model, detail::of_valid(distance), task);
+    if (!d) return fail(d.error());
+    cut.distance = *d;
+    measure_seconds += measuring.total();
+  }
+  level.error = detail::level_error(*cut.distance, finer_error);
+  return level;
+}
+
+Result<void> add_levels(LadderResult& out, VoxelLevels& levels, const std::vector<VoxelTarget>& targets,
+                        std::uint32_t finest, const Reference& reference, const LadderOptions& options,
+                        const Task& task) {
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const Stopwatch making;
+    const Task part = task.part(1.0 / static_cast<double>(targets.size()), fmt::format("level {}", i + 1));
+    Result<VoxelCut> cut = detail::cut_for(levels, targets[i], finest, &reference, options.distance, part);
+    if (!cut && cut.error().code == ErrorCode::empty && i > 0) {
+      out.shortfalls.push_back({i + 1, cut.error().what});
+      break;
+    }
+    if (!cut) return fail(cut.error());
+    if (std::string reason = detail::shortfall_of(targets[i], *cut); !reason.empty()) {
+      out.shortfalls.push_back({i + 1, std::move(reason)});
+    }
+    detail::tell_vanished(levels, out.ladder.original, *cut, out.warnings);
+    finest = std::max<std::uint32_t>(8, cut->resolution * 4 / 5);  // half the triangles, with some room
+    const double before = out.measure_seconds;
+    Result<Level> level = make_level(std::move(*cut), out.ladder.original, out.ladder.levels.back().error.error,
+                                     reference, options.distance, out.measure_seconds, part);
+    if (!level) return fail(level.error());
+    level->seconds = making.total();
+    out.simplify_seconds += level->seconds - (out.measure_seconds - before);
+    out.ladder.levels.push_back(std::move(*level));
+  }
+  return {};
+}
+
+// One fine surface, and a ladder of that.
+Result<LadderResult> collapse_levels(Model original, const LadderOptions& options, VoxelLevels& levels,
+                                     const VoxelTarget& first, std::uint32_t finest, const Task& task) {
+  std::optional<Reference> reference;
+  if (detail::needs_reference(first)) {
+    Result<Reference> made = Reference::create(original, task);
+    if (!made) return fail(made.error());
+    reference.emplace(std::move(*made));
+  }
+  const Reference* known = reference ? &*reference : nullptr;
+  Result<VoxelCut> start = detail::cut_for(levels, first, finest, known, options.distance, task.part(0.3));
+  if (!start) return fail(start.error());
+  std::vector<std::string> warnings = levels.solid().warnings;
+  detail::tell_vanished(levels, original, *start, warnings);
+  LadderOptions collapsing = options;
+  collapsing.start = make_model(std::move(start->mesh), original);
+  Result<LadderResult> made = build_ladder(std::move(original), collapsing, task.part(0.7));
+  if (!made) return made;
+  for (std::size_t i = 1; i < made->ladder.levels.size(); ++i) {
+    made->ladder.levels[i].method = "voxels and edge collapse";
+  }
+  made->warnings.insert(made->warnings.begin(), warnings.begin(), warnings.end());
+  return made;
+}
+
+}  // namespace
+
+Result<LadderResult> build_voxel_ladder(Model original, const LadderOptions& options, const VoxelLadderOptions& voxels,
+                                        Task task) {
+  if (const Result<void> ok = detail::check_ladder(original, options, task); !ok) return fail(ok.error());
+  if (original.meshes.size() != 1 || original.instances.size() != 1) {
+    return fail(ErrorCode::bad_argument, "levels by voxels need an original of one mesh", {},
+                "flatten the scene first");
+  }
+  const std::vector<VoxelTarget> targets = targets_of(options, drawn_triangles(original));
+  VoxelTarget first = targets.front();
+  first.then_collapse = voxels.then_collapse;
+  first.resolution = voxels.resolution;
+  const Result<std::uint32_t> finest = detail::finest_for(original, voxels.voxel, first, task.part(0.1));
+  if (!finest) return fail(finest.error());
+  Result<VoxelLevels> levels = VoxelLevels::create(original, voxels.voxel, *finest, task.part(0.2));
+  if (!levels) return fail(levels.error());
+  if (voxels.then_collapse) {
+    return collapse_levels(std::move(original), options, *levels, first, *finest, task.part(0.7));
+  }
+  LadderResult out;
+  out.warnings = levels->solid().warnings;
+  out.ladder.original = std::move(original);
+  const Stopwatch preparing;
+  const Result<Reference> reference = Reference::create(out.ladder.original, task.part(0.1));
+  if (!reference) return fail(reference.error());
+  out.measure_seconds = preparing.total();
+  out.ladder.levels.push_back(detail::original_level(out.ladder.original, reference->diagonal()));
+  const Result<void> added =
+      add_levels(out, *levels, targets, *finest, *reference, options, task.part(options.image ? 0.4 : 0.6));
+  if (!added) return fail(added.error());
+  if (options.image) {
+    const Result<void> compared = detail::compare_pictures(out, *options.image, task.part(0.2, "comparing pictures"));
+    if (!compared) return fail(compared.error());
+  }
+  return out;
+}
+
+}  // namespace lodestone::chain

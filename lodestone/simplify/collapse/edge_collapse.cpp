@@ -1,0 +1,219 @@
+// Collapses edges, cheap ones first, until so many triangles are left or the next would err too much.
+//
+// Costs are those of Lindstrom & Turk 1998: memoryless, so quadrics (Garland & Heckbert 1997) are made from the triangles
+// as they are now, and a new vertex lies where the volume stays as it is. Legal is a collapse that keeps the surface's
+// topology (the link condition, Dey et al. 1999) and turns no triangle over.
+//
+// There is no queue that follows every change. It goes in passes: stars and quadrics of all vertices, the cost of every
+// edge that may go, the cheapest share of them in order of cost; each is collapsed if nothing near it has changed in
+// this pass; then what is gone is cleared away. A pass is linear and removes a fixed share of what is left: O(n log n)
+// in all. What was done is recorded, and the record makes any level (collapse_log.h).
+#include "lodestone/simplify/collapse/edge_collapse.h"
+#include "lodestone/base/memory.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodestone/core/validate.h"
+#include "lodestone/simplify/collapse/sweep_detail.h"
+
+namespace lodestone::simplify {
+
+using detail::State;
+using detail::Step;
+
+const char* to_string(StopReason reason) {
+  switch (reason) {
+    case StopReason::reached_target:
+      return "reached_target";
+    case StopReason::error_limit:
+      return "error_limit";
+    case StopReason::no_legal_collapse:
+      return "no_legal_collapse";
+  }
+  return "";
+}
+
+namespace {
+
+// Share of the edges that are cheap enough for a pass. Within a range of vertices the order is that of cost whatever
+// the share is; edges across ranges lag a pass behind. Mean error at 10 % of eight meshes, over CGAL Lindstrom-Turk's:
+// 0.3 1.000, 0.5 1.001, 0.65 1.009, 0.8 1.004; more than 0.5 saves no time, as more is done past the target.
+constexpr double kShare = 0.5;
+
+Result<void> check(const Mesh& mesh, const EdgeCollapseOptions& options) {
+  const auto bad = [](const char* what, const char* remedy) {
+    return fail(ErrorCode::bad_argument, what, "edge collapse", remedy);
+  };
+  if (options.target_triangles == 0 && !(options.max_error < std::numeric_limits<double>::infinity())) {
+    return bad("neither a triangle count nor an error is asked for", "set target_triangles or max_error");
+  }
+  if (!(options.max_error >= 0)) return bad("the error limit is negative or not a number", "use 0 or more");
+  if (mesh.triangles.size() > detail::kMaxTriangles) {
+    return bad("the mesh has more triangles than can be handled", "split it into parts below 2^30 triangles");
+  }
+  if (!options.locked.empty() && options.locked.size() != mesh.vertex_count()) {
+    return bad("the list of locked vertices has another length than the mesh's vertices", "give one entry a vertex");
+  }
+  if (!options.weights.empty() && options.weights.size() != mesh.vertex_count()) {
+    return bad("the list of weights has another length than the mesh's vertices", "give one entry a vertex");
+  }
+  const bool usable =
+      std::all_of(options.weights.begin(), options.weights.end(), [](float w) { return w >= 0 && std::isfinite(w); });
+  if (!usable) return bad("a weight is negative or not finite", "use 0 or more; lock what must stay");
+  const auto& metric = options.metric.m;
+  if (!std::all_of(metric.begin(), metric.end(), [](double m) { return std::isfinite(m); })) {
+    return bad("the metric is not finite", "give a transform, or the identity");
+  }
+  return {};
+}
+
+// A dihedral angle of 0.1 degrees.
+constexpr float kBladeCosine = 0.9999985F;
+
+struct Run {
+  std::vector<Step> steps;
+  std::vector<WedgeMerge> merges;
+};
+
+// Passes until the count or the error limit is passed, or nothing moves any more. The order of steps does not depend on
+// either.
+Run run_passes(State& state, const EdgeCollapseOptions& options, const Task& task) {
+  Run run;
+  run.steps.reserve(state.positions.size());  // what is not used is never touched, and so costs nothing
+  const auto left = [&] { return state.triangles.size() + state.backs; };
+  const double start = static_cast<double>(left());
+  double reported = 0;
+  double share = kShare;
+  const auto error_limit = static_cast<float>(options.max_error / state.scale);
+  while (left() > options.target_triangles && !task.cancelled()) {
+    const std::size_t vertices = state.positions.size(), before = run.steps.size();
+    const std::size_t collapses = detail::run_pass(state, share, run.steps, run.merges, task);
+    const double done = 1 - static_cast<double>(left()) / std::max(1.0, start);
+    task.advance(std::max(0.0, done - reported));
+    reported = std::max(reported, done);
+    const bool over = std::any_of(run.steps.begin() + static_cast<std::ptrdiff_t>(before), run.steps.end(),
+                                  [&](const Step& s) { return s.error > error_limit; });
+    if (over) break;
+    if (collapses == 0 && share >= 1) {
+      // Thin bars and plates have no other way left than to end in a blade.
+      if (state.fold_cosine >= kBladeCosine) break;
+      state.fold_cosine = kBladeCosine;
+    }
+    if (collapses * 50 < vertices) share = std::min(1.0, share * 2);
+  }
+  return run;
+}
+
+// A vertex may move past the largest float where a mesh reaches that far.
+Vec3f within_floats(Vec3d p) {
+  constexpr double most = std::numeric_limits<float>::max();
+  return to_float({std::clamp(p.x, -most, most), std::clamp(p.y, -most, most), std::clamp(p.z, -most, most)});
+}
+
+// From steps in the working frame to the lasting record.
+CollapseLog make_log(const Mesh& mesh, State& state, Run run) {
+  CollapseLog log;
+  log.dropped = std::move(state.dropped);
+  log.start_triangles = static_cast<std::uint32_t>(mesh.triangles.size() - log.dropped.size());
+  log.wedges = std::move(run.merges);
+  log.collapses.reserve(run.steps.size());
+  std::vector<Vec3f> current = mesh.positions;
+  double error = 0;
+  for (const Step& step : run.steps) {
+    Collapse c;
+    c.kept = step.kept;
+    c.removed = step.removed;
+    c.kept_before = current[step.kept];
+    const Vec3d moved = state.metric_inverse.direction(to_double(step.position) * state.scale) + state.center;
+    c.position = step.moved ? within_floats(moved) : c.kept_before;
+    error = std::max(error, static_cast<double>(step.error) * state.scale);
+    c.error = static_cast<float>(error);
+    c.first_wedge = step.first_wedge;
+    c.faces = step.faces;
+    current[step.kept] = c.position;
+    log.collapses.push_back(c);
+  }
+  return log;
+}
+
+struct Cut {
+  std::size_t count;
+  StopReason stop;
+};
+
+Cut find_cut(const CollapseLog& log, const EdgeCollapseOptions& options) {
+  const auto within = std::partition_point(log.collapses.begin(), log.collapses.end(), [&](const Collapse& c) {
+    return static_cast<double>(c.error) <= options.max_error;
+  });
+  const auto by_error = static_cast<std::size_t>(within - log.collapses.begin());
+  if (options.target_triangles > 0) {
+    const std::size_t by_count = log.prefix_for(options.target_triangles);
+    if (by_count <= by_error && log.triangles_after(by_count) <= options.target_triangles) {
+      return {by_count, StopReason::reached_target};
+    }
+  }
+  return {by_error, by_error < log.collapses.size() ? StopReason::error_limit : StopReason::no_legal_collapse};
+}
+
+LockCounts count_locks(const State& state) {
+  LockCounts counts;
+  for (const std::uint32_t v : state.original) {
+    switch (state.causes[v]) {
+      case detail::LockCause::none:
+        break;
+      case detail::LockCause::border:
+        ++counts.border;
+        break;
+      case detail::LockCause::seam_corner:
+        ++counts.seam_corner;
+        break;
+      case detail::LockCause::non_manifold:
+        ++counts.non_manifold;
+        break;
+      case detail::LockCause::by_request:
+        ++counts.by_request;
+        break;
+    }
+  }
+  return counts;
+}
+
+// What the record needs no more: the most of the memory of a run, kept at the size that it began with.
+void release_mesh(State& state) {
+  free_memory(state.positions, state.drift, state.triangles, state.wedges, state.normals, state.first_normals,
+              state.quadrics, state.notes, state.classes, state.stars, state.wedge_normals, state.weights,
+              state.star_memory, state.groups, state.original, state.chart);
+  state.attributes = {};
+}
+
+}  // namespace
+
+Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOptions& options, Task task) {
+  if (const Result<void> ok = check(mesh, options); !ok) return fail(ok.error());
+  if (options.input != Input::valid) {
+    if (const Result<void> ok = validate(mesh, task); !ok) return fail(ok.error());
+  }
+  const Task passes = task.part(0.9);
+  Result<State> state = detail::make_state(mesh, options, passes);
+  if (!state) return fail(state.error());
+  Run run = run_passes(*state, options, passes);
+  if (task.cancelled()) return cancelled_error("edge collapse");
+  EdgeCollapseResult result;
+  result.locked = count_locks(*state);
+  release_mesh(*state);
+  CollapseLog log = make_log(mesh, *state, std::move(run));
+  const Cut cut = find_cut(log, options);
+  result.stop = cut.stop;
+  if (cut.count > 0) result.estimated_error = log.collapses[cut.count - 1].error;
+  ReplayOptions replaying;
+  replaying.input = Input::valid;
+  Result<ReplayResult> replayed = replay(mesh, log, cut.count, replaying, task);
+  if (!replayed) return fail(replayed.error());
+  result.mesh = std::move(replayed->mesh);
+  result.origin = std::move(replayed->origin);
+  if (options.record_log) result.log = std::move(log);
+  return result;
+}
+
+}  // namespace lodestone::simplify

@@ -1,0 +1,24 @@
+// Edges turned over where that brings a level nearer to its original.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "lodestone/simplify/fit/ties_detail.h"
+
+namespace lodestone::simplify::detail {
+
+/// Low and high vertex of sides that must stay, sorted.
+using FixedSides = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// Turns each edge over that is worth it, no triangle twice: where the squared distances of the ties around fall by two
+/// per cent, no worse distance appears, no edge is doubled, and no face turns away, folds or becomes much thinner.
+/// Where all four vertices around are `held` an edge stays. `wedges` goes along with level.triangles. Returns the pairs
+/// of triangles that changed. O(triangles log triangles of the target).
+std::vector<TrianglePair> flip_edges(const FitTarget& target, const Ties& ties, const FixedSides& fixed,
+                                     std::span<const std::uint8_t> held, spatial::Surface& level,
+                                     std::vector<Triangle>& wedges, const Task& task);
+
+}  // namespace lodestone::simplify::detail

@@ -1,0 +1,31 @@
+// One step of vertices towards where all ties are shortest.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lodestone/simplify/fit/ties_detail.h"
+
+namespace lodestone::simplify::detail {
+
+/// Corners around each vertex, 3 * triangle + corner: list[first[v] .. first[v + 1]).
+struct CornersAt {
+  std::vector<std::uint32_t> first, list;
+};
+CornersAt corners_at(const spatial::Surface& level);
+
+/// Moves of the vertices, one each, zero where `held`. Gauss and Newton: each tie's partner stays, and counts along the
+/// tie alone, so that the level may slide; damped by `damping` times the ties' own weight at each vertex. The system of
+/// 3 x 3 blocks is solved by conjugate gradients, preconditioned by its diagonal blocks. O(ties + steps * triangles).
+std::vector<Vec3d> solve_moves(const spatial::Surface& level, const Ties& ties, const CornersAt& around,
+                               std::span<const std::uint8_t> held, double damping, const Task& task);
+
+/// Takes the moves, halved where a face would turn by more than some 70 degrees or fold onto a neighbour, until none
+/// does; a vertex that does even then stays. The same where a face would turn away from where it should
+/// look (`facing`, one a triangle): small steps must not add up. Vertices of triangles that would come to cross stay.
+/// Positions are rounded to floats relative to `offset`, as a mesh keeps them.
+void take_moves(spatial::Surface& level, const CornersAt& around, std::vector<Vec3d> moves,
+                std::span<const Vec3d> facing, Vec3d offset, const Task& task);
+
+}  // namespace lodestone::simplify::detail

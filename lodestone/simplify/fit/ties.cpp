@@ -1,0 +1,457 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "lodestone/base/parallel.h"
+#include "lodestone/base/random.h"
+#include "lodestone/math/box.h"
+#include "lodestone/math/triangle.h"
+#include "lodestone/simplify/fit/ties_detail.h"
+#include "lodestone/spatial/closest_batch.h"
+
+namespace lodestone::simplify::detail {
+
+namespace {
+
+constexpr std::size_t kChunk = 4096;
+
+Tie tie_at(const spatial::Surface& level, std::uint32_t triangle, Vec3d on_level, float weight, Vec3d partner) {
+  const auto [a, b, c] = level.corners(triangle);
+  const std::array<double, 3> w = barycentric(on_level, a, b, c);
+  return {triangle, static_cast<float>(w[1]), static_cast<float>(w[2]), weight, partner};
+}
+
+// Every how many-th point of the original is enough for a level: some 24 a triangle, 100,000 at least.
+std::size_t stride_for(std::size_t points, std::size_t triangles) {
+  return std::max<std::size_t>(1, points / (24 * triangles + 100'000));
+}
+
+// From points of the original to the level, every `stride`-th.
+void tie_points(const FitTarget& target, const spatial::Surface& level, const spatial::Bvh& tree, std::size_t stride,
+                std::span<Tie> ties, const Task& task) {
+  const auto factor = static_cast<float>(stride);
+  parallel_for(ties.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<Vec3d> points;
+    for (std::size_t i = begin; i < end; ++i) points.push_back(target.points()[i * stride]);
+    std::vector<spatial::Nearest> closest(end - begin);
+    spatial::ClosestBatch(tree).find(points, closest);
+    for (std::size_t i = begin; i < end; ++i) {
+      const spatial::Nearest& near = closest[i - begin];
+      ties[i] = tie_at(level, near.triangle, near.point, factor * target.weights()[i * stride], points[i - begin]);
+    }
+  });
+}
+
+double area_of(const spatial::Surface& level) {
+  double area = 0;
+  for (std::size_t t = 0; t < level.triangles.size(); ++t) {
+    const auto [a, b, c] = level.corners(t);
+    area += length(scaled_normal(a, b, c)) / 2;
+  }
+  return area;
+}
+
+// The k-th point of a triangle of the level, without a partner. `area`: of the level.
+Tie level_tie(std::size_t t, const std::array<Vec3d, 3>& corners, std::size_t k, double area) {
+  const double own = length(scaled_normal(corners[0], corners[1], corners[2])) / 2;
+  return {static_cast<std::uint32_t>(t),
+          kInner[k][0],
+          kInner[k][1],
+          area > 0 ? static_cast<float>(own / area / std::size(kInner)) : 0.0F,
+          {}};
+}
+
+// A point of the original goes to the nearer of two triangles.
+void tie_nearer(const TrianglePair& pair, const std::array<std::array<Vec3d, 3>, 2>& corners, Tie& tie) {
+  ClosestPoint best{{}, std::numeric_limits<double>::infinity()};
+  for (std::size_t side = 0; side < 2; ++side) {
+    const auto& [a, b, c] = corners[side];
+    const ClosestPoint found = closest_point(tie.partner, a, b, c);
+    if (!(found.distance_sq < best.distance_sq)) continue;
+    best = found;
+    const std::array<double, 3> w = barycentric(found.point, a, b, c);
+    tie.triangle = pair[side];
+    tie.second = static_cast<float>(w[1]);
+    tie.third = static_cast<float>(w[2]);
+  }
+}
+
+// From points of the level to the original: inner points of each triangle, and its corners.
+void tie_level(const FitTarget& target, const spatial::Surface& level, std::span<Tie> ties, const Task& task) {
+  const double area = area_of(level);
+  constexpr std::size_t kEach = std::size(kInner);
+  parallel_for(level.triangles.size(), kChunk / kEach, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<Vec3d> points;
+    std::vector<spatial::Nearest> closest((end - begin) * kEach);
+    for (std::size_t t = begin; t < end; ++t) {
+      const std::array<Vec3d, 3> corners = level.corners(t);
+      for (std::size_t k = 0; k < kEach; ++k) {
+        Tie& tie = ties[t * kEach + k];
+        tie = level_tie(t, corners, k, area);
+        points.push_back(tie.on(corners));
+      }
+    }
+    spatial::ClosestBatch(target.tree()).find(points, closest);
+    for (std::size_t i = 0; i < points.size(); ++i) ties[begin * kEach + i].partner = closest[i].point;
+  });
+}
+
+void sort_by_triangle(Ties& ties, std::vector<Tie> loose, std::size_t triangles) {
+  ties.first.assign(triangles + 1, 0);
+  for (const Tie& tie : loose) ++ties.first[tie.triangle];
+  exclusive_scan(ties.first);
+  std::vector<std::uint32_t> next(ties.first.begin(), ties.first.end() - 1);
+  ties.list.resize(loose.size());
+  for (const Tie& tie : loose) ties.list[next[tie.triangle]++] = tie;
+}
+
+void raise(Worst& worst, const Worst& other) {
+  if (other.distance > worst.distance) worst = other;
+}
+
+// Distances of the level's vertices, those that are not known; told to all triangles around them.
+void look_at_corners(const FitTarget& target, const spatial::Surface& level, const std::vector<std::uint8_t>& is_known,
+                     Ties& ties, const Task& task) {
+  std::vector<std::uint32_t> wanted;
+  for (std::uint32_t v = 0; v < level.positions.size(); ++v) {
+    if (is_known.empty() || is_known[v] == 0) wanted.push_back(v);
+  }
+  ties.corner.resize(level.positions.size());
+  parallel_for(wanted.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<Vec3d> points;
+    for (std::size_t i = begin; i < end; ++i) points.push_back(level.positions[wanted[i]]);
+    std::vector<spatial::Nearest> closest(end - begin);
+    spatial::ClosestBatch(target.tree()).find(points, closest);
+    for (std::size_t i = begin; i < end; ++i) {
+      const spatial::Nearest& near = closest[i - begin];
+      ties.corner[wanted[i]] = {static_cast<float>(std::sqrt(near.distance_sq)), 0, 0, near.point};
+    }
+  });
+  for (std::size_t t = 0; t < level.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Worst worst = ties.corner[level.triangles[t][k]];
+      worst.second = k == 1 ? 1.0F : 0.0F;
+      worst.third = k == 2 ? 1.0F : 0.0F;
+      raise(ties.worst[t], worst);
+    }
+  }
+}
+
+void add_up(const spatial::Surface& level, Ties& ties, const Task& task) {
+  ties.worst.assign(level.triangles.size(), {});
+  struct Sum {
+    double mean = 0, energy = 0;
+  };
+  const Sum sum = parallel_reduce(
+      level.triangles.size(), kChunk, task, Sum{},
+      [&](std::size_t begin, std::size_t end) {
+        Sum part;
+        for (std::size_t t = begin; t < end; ++t) {
+          const std::array<Vec3d, 3> corners = level.corners(t);
+          double worst_sq = -1;
+          std::uint32_t worst = 0;
+          for (std::uint32_t i = ties.first[t]; i < ties.first[t + 1]; ++i) {
+            const Tie& tie = ties.list[i];
+            const double d_sq = length_sq(tie.partner - tie.on(corners));
+            const double w = static_cast<double>(tie.weight);
+            part.mean += w * std::sqrt(d_sq);
+            part.energy += w * d_sq;
+            if (d_sq > worst_sq) {
+              worst_sq = d_sq;
+              worst = i;
+            }
+          }
+          if (worst_sq < 0) continue;
+          const Tie& tie = ties.list[worst];
+          ties.worst[t] = {static_cast<float>(std::sqrt(worst_sq)), tie.second, tie.third, tie.partner};
+        }
+        return part;
+      },
+      [](Sum a, Sum b) {
+        return Sum{a.mean + b.mean, a.energy + b.energy};
+      });
+  ties.mean = sum.mean / 2;
+  ties.energy = sum.energy;
+}
+
+// For each triangle, the one of the other surface with the same corners in the same order; kNone where there is none.
+std::vector<std::uint32_t> same_triangles(const spatial::Surface& of, const spatial::Surface& in) {
+  const auto hash = [](const spatial::Surface& surface, std::size_t t) {
+    std::uint64_t h = 0;
+    for (const Vec3d& p : surface.corners(t)) {
+      for (std::size_t k = 0; k < 3; ++k) h = mix_bits(h ^ std::bit_cast<std::uint64_t>(p[k]));
+    }
+    return h;
+  };
+  std::size_t size = 16;
+  while (size < 2 * in.triangles.size()) size *= 2;
+  std::vector<std::uint32_t> table(size, kNone);
+  for (std::uint32_t t = 0; t < in.triangles.size(); ++t) {
+    std::size_t at = hash(in, t) & (size - 1);
+    while (table[at] != kNone) at = (at + 1) & (size - 1);
+    table[at] = t;
+  }
+  std::vector<std::uint32_t> same(of.triangles.size(), kNone);
+  for (std::size_t t = 0; t < of.triangles.size(); ++t) {
+    for (std::size_t at = hash(of, t) & (size - 1); table[at] != kNone; at = (at + 1) & (size - 1)) {
+      if (in.corners(table[at]) == of.corners(t)) {
+        same[t] = table[at];
+        break;
+      }
+    }
+  }
+  return same;
+}
+
+// The triangles of the level that are new, as a surface; `drawn` numbers those of the level.
+spatial::Surface new_triangles(const spatial::Surface& level, const std::vector<std::uint32_t>& old_of) {
+  spatial::Surface out;
+  out.positions = level.positions;
+  for (std::uint32_t t = 0; t < old_of.size(); ++t) {
+    if (old_of[t] != kNone) continue;
+    out.triangles.push_back(level.triangles[t]);
+    out.drawn.push_back(t);
+    for (const Vec3d& p : level.corners(t)) out.bounds.add(p);
+  }
+  return out;
+}
+
+// Cells of a grid over a surface: which could hold a point that is nearer than `reach` to one of its triangles.
+class NearMask {
+ public:
+  NearMask(const spatial::Surface& surface, double reach) : origin_(surface.bounds.min - Vec3d{reach, reach, reach}) {
+    const Vec3d size = surface.bounds.size() + Vec3d{2 * reach, 2 * reach, 2 * reach};
+    for (std::size_t k = 0; k < 3; ++k) scale_[k] = size[k] > 0 ? kCells / size[k] : 0;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      Box3d box;
+      for (const Vec3d& p : surface.corners(t)) box.add(p);
+      std::uint32_t low[3], high[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        low[k] = cell(box.min[k] - reach, k);
+        high[k] = cell(box.max[k] + reach, k);
+      }
+      for (std::uint32_t z = low[2]; z <= high[2]; ++z) {
+        for (std::uint32_t y = low[1]; y <= high[1]; ++y) {
+          rows_[z * kCells + y] |= (~std::uint64_t{0} >> (63 - (high[0] - low[0]))) << low[0];
+        }
+      }
+    }
+  }
+
+  bool maybe_near(Vec3d p) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double place = (p[k] - origin_[k]) * scale_[k];
+      if (!(place >= 0 && place <= kCells)) return false;
+    }
+    return (rows_[cell(p.z, 2) * kCells + cell(p.y, 1)] >> cell(p.x, 0) & 1) != 0;
+  }
+
+ private:
+  static constexpr std::uint32_t kCells = 64;
+  std::uint32_t cell(double at, std::size_t k) const {
+    return static_cast<std::uint32_t>(std::clamp((at - origin_[k]) * scale_[k], 0.0, kCells - 1.0));
+  }
+  Vec3d origin_, scale_;
+  std::vector<std::uint64_t> rows_ = std::vector<std::uint64_t>(std::size_t{kCells} * kCells, 0);
+};
+
+// As tie_points(): a point keeps its partner where that is there still, unless a new triangle is nearer.
+void keep_points(const spatial::Surface& level, const spatial::Bvh& tree, const spatial::Surface& fresh,
+                 const std::vector<std::uint32_t>& new_of, const Known& known, std::span<Tie> ties, const Task& task) {
+  constexpr std::size_t kEach = std::size(kInner);
+  const std::optional<spatial::Bvh> fresh_tree =
+      fresh.triangles.empty() ? std::nullopt : std::make_optional<spatial::Bvh>(fresh);
+  const NearMask mask(fresh, known.ties.max);
+  parallel_for(new_of.size(), kChunk / 8, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<spatial::Nearest> near;
+    std::vector<std::uint32_t> lost;  // ties whose triangle is there no more
+    for (std::size_t old = begin; old < end; ++old) {
+      // Ties of the original's points before this triangle: all ties less the level's.
+      const std::uint32_t first = known.ties.first[old], last = known.ties.first[old + 1] - std::uint32_t{kEach};
+      for (std::uint32_t i = first; i < last; ++i) {
+        const auto at = static_cast<std::uint32_t>(i - old * kEach);
+        Tie& tie = ties[at];
+        tie = known.ties.list[i];
+        const Vec3d p = tie.partner;
+        if (new_of[old] == kNone) {
+          lost.push_back(at);
+          continue;
+        }
+        tie.triangle = new_of[old];
+        if (!fresh_tree) continue;
+        double best_sq = length_sq(p - tie.on(level.corners(tie.triangle)));
+        if (!(best_sq > 0) || !mask.maybe_near(p)) continue;
+        near.clear();
+        fresh_tree->all_within(p, std::sqrt(best_sq), near);
+        for (const spatial::Nearest& n : near) {
+          if (!(n.distance_sq < best_sq)) continue;
+          best_sq = n.distance_sq;
+          tie = tie_at(level, fresh.drawn[n.triangle], n.point, tie.weight, p);
+        }
+      }
+    }
+    std::vector<Vec3d> points;
+    for (const std::uint32_t at : lost) points.push_back(ties[at].partner);
+    std::vector<spatial::Nearest> closest(points.size());
+    spatial::ClosestBatch(tree).find(points, closest);
+    for (std::size_t i = 0; i < lost.size(); ++i) {
+      Tie& tie = ties[lost[i]];
+      tie = tie_at(level, closest[i].triangle, closest[i].point, tie.weight, points[i]);
+    }
+  });
+}
+
+// As tie_level() for the new triangles alone.
+void keep_level(const FitTarget& target, const spatial::Surface& level, const std::vector<std::uint32_t>& old_of,
+                const Known& known, std::span<Tie> ties, const Task& task) {
+  const double area = area_of(level);
+  constexpr std::size_t kEach = std::size(kInner);
+  parallel_for(level.triangles.size(), kChunk / 8, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<std::size_t> wanted;
+    std::vector<Vec3d> points;
+    for (std::size_t t = begin; t < end; ++t) {
+      const std::array<Vec3d, 3> corners = level.corners(t);
+      for (std::size_t k = 0; k < kEach; ++k) {
+        Tie& tie = ties[t * kEach + k];
+        tie = level_tie(t, corners, k, area);
+        if (old_of[t] != kNone) {
+          tie.partner = known.ties.list[known.ties.first[old_of[t] + 1] - kEach + k].partner;
+          continue;
+        }
+        wanted.push_back(t * kEach + k);
+        points.push_back(tie.on(corners));
+      }
+    }
+    std::vector<spatial::Nearest> closest(points.size());
+    spatial::ClosestBatch(target.tree()).find(points, closest);
+    for (std::size_t i = 0; i < wanted.size(); ++i) ties[wanted[i]].partner = closest[i].point;
+  });
+}
+
+}  // namespace
+
+Ties make_ties(const FitTarget& target, const spatial::Surface& level, const Task& task, const Known* known) {
+  Ties ties;
+  const std::size_t triangles = level.triangles.size(), all = target.points().size();
+  if (triangles == 0 || all == 0) return ties;
+  const bool updates = known != nullptr && !known->ties.list.empty();
+  const std::size_t stride = stride_for(all, triangles);
+  const std::size_t points = updates ? known->ties.list.size() - known->level.triangles.size() * std::size(kInner)
+                                     : (all + stride - 1) / stride;
+  const spatial::Bvh tree(level, task);
+  std::vector<Tie> loose(points + triangles * std::size(kInner));
+  const std::span<Tie> of_points = std::span(loose).first(points), of_level = std::span(loose).subspan(points);
+  ties.close.assign(triangles, {});
+  ties.corner.assign(level.positions.size(), {});
+  std::vector<std::uint8_t> corner_known;
+  if (updates) {
+    const std::vector<std::uint32_t> old_of = same_triangles(level, known->level);
+    corner_known.resize(level.positions.size(), 0);
+    std::vector<std::uint32_t> new_of(known->level.triangles.size(), kNone);
+    for (std::uint32_t t = 0; t < triangles; ++t) {
+      if (old_of[t] == kNone) continue;
+      new_of[old_of[t]] = t;
+      ties.close[t] = known->ties.close[old_of[t]];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t v = level.triangles[t][k];
+        ties.corner[v] = known->ties.corner[known->level.triangles[old_of[t]][k]];
+        corner_known[v] = 1;
+      }
+    }
+    keep_points(level, tree, new_triangles(level, old_of), new_of, *known, of_points, task);
+    keep_level(target, level, old_of, *known, of_level, task);
+  } else {
+    tie_points(target, level, tree, stride, of_points, task);
+    tie_level(target, level, of_level, task);
+  }
+  sort_by_triangle(ties, std::move(loose), triangles);
+  add_up(level, ties, task);
+  look_at_corners(target, level, corner_known, ties, task);
+  for (std::size_t t = 0; t < triangles; ++t) {
+    raise(ties.worst[t], ties.close[t]);
+    ties.max = std::max(ties.max, static_cast<double>(ties.worst[t].distance));
+  }
+  return ties;
+}
+
+void retie(const FitTarget& target, const spatial::Surface& level, const std::vector<TrianglePair>& changed, Ties& ties,
+           const Task& task) {
+  if (changed.empty()) return;
+  constexpr std::size_t kEach = std::size(kInner);
+  const double area = area_of(level);
+  parallel_for(changed.size(), 64, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::array<std::array<Vec3d, 3>, 2> corners{level.corners(changed[i][0]), level.corners(changed[i][1])};
+      std::uint32_t hint = kNone;
+      for (std::size_t side = 0; side < 2; ++side) {
+        const std::uint32_t t = changed[i][side], last = ties.first[t + 1];
+        for (std::uint32_t k = ties.first[t]; k + kEach < last; ++k) tie_nearer(changed[i], corners, ties.list[k]);
+        for (std::size_t k = 0; k < kEach; ++k) {
+          Tie& tie = ties.list[last - kEach + k];
+          tie = level_tie(t, corners[side], k, area);
+          const spatial::Nearest near = target.tree().closest(tie.on(corners[side]), hint);
+          hint = near.triangle;
+          tie.partner = near.point;
+        }
+      }
+    }
+  });
+  // The points of the level stay the last of each triangle: those of the original come first, in the order that was.
+  std::vector<Tie> loose;
+  loose.reserve(ties.list.size());
+  for (const bool own : {false, true}) {
+    for (std::size_t t = 0; t < level.triangles.size(); ++t) {
+      const std::uint32_t begin = ties.first[t], end = ties.first[t + 1], middle = end - std::uint32_t{kEach};
+      const auto part = std::span(ties.list).subspan(own ? middle : begin, own ? kEach : middle - begin);
+      loose.insert(loose.end(), part.begin(), part.end());
+    }
+  }
+  sort_by_triangle(ties, std::move(loose), level.triangles.size());
+  add_up(level, ties, task);
+}
+
+void look_at_worst(const FitTarget& target, const spatial::Surface& level, double share, Ties& ties, const Task& task) {
+  // Lattices of points: a wide one first, a narrow one where that finds something near to the maximum.
+  constexpr int kWide = 4, kNarrow = 10;
+  constexpr double kPromising = 0.7;
+  std::vector<std::uint32_t> suspects;
+  for (std::uint32_t t = 0; t < level.triangles.size(); ++t) {
+    const bool looked = ties.close[t].distance > 0;
+    if (!looked && static_cast<double>(ties.worst[t].distance) > share * ties.max) suspects.push_back(t);
+  }
+  const double promising = kPromising * ties.max;
+  parallel_for(suspects.size(), 16, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<Vec3d> points;
+    std::vector<std::array<float, 2>> shares;
+    std::vector<spatial::Nearest> closest;
+    spatial::ClosestBatch batch(target.tree());
+    const auto look = [&](std::uint32_t t, int steps) {
+      const auto [a, b, c] = level.corners(t);
+      points.clear();
+      shares.clear();
+      for (int i = 0; i <= steps; ++i) {
+        for (int j = 0; i + j <= steps; ++j) {
+          const double second = static_cast<double>(i) / steps, third = static_cast<double>(j) / steps;
+          points.push_back(a + (b - a) * second + (c - a) * third);
+          shares.push_back({static_cast<float>(second), static_cast<float>(third)});
+        }
+      }
+      closest.assign(points.size(), {});
+      batch.find(points, closest);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        raise(ties.close[t],
+              {static_cast<float>(std::sqrt(closest[i].distance_sq)), shares[i][0], shares[i][1], closest[i].point});
+      }
+      raise(ties.worst[t], ties.close[t]);
+    };
+    for (std::size_t k = begin; k < end; ++k) {
+      look(suspects[k], kWide);
+      if (static_cast<double>(ties.worst[suspects[k]].distance) > promising) look(suspects[k], kNarrow);
+    }
+  });
+  for (const Worst& worst : ties.worst) ties.max = std::max(ties.max, static_cast<double>(worst.distance));
+}
+
+}  // namespace lodestone::simplify::detail
