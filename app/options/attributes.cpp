@@ -67,42 +67,43 @@ OptionGroup level_attributes_group() {
             Completion::choices}}};
 }
 
-Result<void> read_attribute_options(const Arguments& arguments, chain::Influence& influence) {
+Result<void> read_attribute_options(const Arguments& arguments, chain::SimplifyConstraints& constraints) {
   if (arguments.has("--attribute-weights")) {
     for (const std::string& word : split_commas(arguments.text("--attribute-weights"))) {
-      if (read_weight(word, influence.attribute_weights)) continue;
+      if (read_weight(word, constraints.attribute_weights)) continue;
       return fail(ErrorCode::bad_argument, fmt::format("--attribute-weights: '{}' is no weight", printable(word)), {},
                   "write NAME=W, W from 0 to 1000000, such as uv=2,color=0.5");
     }
   }
   const Result<std::uint64_t> influences = arguments.count("--influences");
   if (!influences) return fail(influences.error());
-  influence.max_skin_influences = *influences;
+  constraints.max_skin_influences = *influences;
   for (const char* option : {"--influences", "--tangents"}) {
     if (!arguments.has(option) || !arguments.has("--only")) continue;
     return fail(ErrorCode::bad_argument, fmt::format("{} does not go with --only", option), {},
                 "leave one of them out: --only keeps all other triangles to the bit");
   }
   const std::string tangents = arguments.text("--tangents");
-  if (tangents == "rebuild") influence.tangents = chain::Tangents::rebuilt;
-  if (tangents == "drop") influence.tangents = chain::Tangents::dropped;
+  if (tangents == "rebuild") constraints.tangents = chain::Tangents::rebuilt;
+  if (tangents == "drop") constraints.tangents = chain::Tangents::dropped;
   return {};
 }
 
-void tell_of_attributes(const Model& model, const chain::Influence& influence, std::vector<std::string>& warnings) {
+void tell_of_attributes(const Model& model, const chain::SimplifyConstraints& constraints,
+                        std::vector<std::string>& warnings) {
   std::size_t cut = 0;
   for (const Mesh& mesh : model.meshes) {
-    cut += influence.max_skin_influences > 0 && influence.only.empty()
-               ? wedges_above(mesh, influence.max_skin_influences)
+    cut += constraints.max_skin_influences > 0 && constraints.only.empty()
+               ? wedges_above(mesh, constraints.max_skin_influences)
                : 0;
   }
   if (cut > 0) {
     warnings.push_back(
         fmt::format("on {} corners more joints pull than {}; coarser levels keep the heaviest "
                     "(--influences 0 keeps all)",
-                    with_separators(cut), influence.max_skin_influences));
+                    with_separators(cut), constraints.max_skin_influences));
   }
-  for (const auto& weight : influence.attribute_weights.by_name) {
+  for (const auto& weight : constraints.attribute_weights.by_name) {
     const std::string& name = weight.first;
     const bool known = std::any_of(model.meshes.begin(), model.meshes.end(), [&](const Mesh& mesh) {
       return std::any_of(mesh.attributes.begin(), mesh.attributes.end(),

@@ -6,7 +6,7 @@
 #include "app/options/attributes.h"
 #include "app/options/axes.h"
 #include "app/options/bake_run.h"
-#include "app/options/influence.h"
+#include "app/options/constraints.h"
 #include "app/options/render_options.h"
 #include "app/options/shared_options.h"
 #include "app/options/voxel_method.h"

@@ -1,8 +1,8 @@
 #include <array>
 
 #include "app/samples/noise.h"
-#include "app/samples/rings.h"
 #include "app/samples/samples.h"
+#include "app/samples/surface_of_revolution.h"
 #include "lodestone/math/angle.h"
 
 namespace lodestone::app {
@@ -73,7 +73,7 @@ Model make_icosphere(int level, const Task& task) {
 
 Model make_sphere(std::size_t triangles, const Task& task) {
   // Places are shares of the half circle from the lower to the upper pole.
-  const RingProfile profile{[](double place) { return 2 * kPi * sin_cos_degrees(180 * place).sin; }, kPi};
+  const RevolutionProfile profile{[](double place) { return 2 * kPi * sin_cos_degrees(180 * place).sin; }, kPi};
   const RingSurface surface = [](double place, double turns) {
     const SinCos height = sin_cos_degrees(180 * place), around = sin_cos_degrees(360 * turns);
     return Vec3d{height.sin * around.sin, -height.cos, height.sin * around.cos};

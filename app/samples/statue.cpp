@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "app/samples/noise.h"
-#include "app/samples/rings.h"
 #include "app/samples/samples.h"
+#include "app/samples/surface_of_revolution.h"
 #include "lodestone/math/angle.h"
 
 namespace lodestone::app {
@@ -122,11 +122,11 @@ Vec3d sculpted(Vec3d p, Vec3d outward, double front, std::uint64_t seed) {
 
 Model make_statue(std::size_t triangles, std::uint64_t seed, const Task& task) {
   const Outline outline;
-  const RingProfile profile{[&](double place) {
-                              const Row row = outline.at(place);
-                              return 2 * kPi * std::sqrt((row[1] * row[1] + row[2] * row[2]) / 2);
-                            },
-                            outline.length()};
+  const RevolutionProfile profile{[&](double place) {
+                                    const Row row = outline.at(place);
+                                    return 2 * kPi * std::sqrt((row[1] * row[1] + row[2] * row[2]) / 2);
+                                  },
+                                  outline.length()};
   const RingSurface surface = [&](double place, double turns) {
     const Row row = outline.at(place), below = outline.at(place - 1e-3), above = outline.at(place + 1e-3);
     const SinCos angle = sin_cos_degrees(360 * turns);

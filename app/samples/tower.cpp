@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "app/samples/noise.h"
-#include "app/samples/rings.h"
 #include "app/samples/samples.h"
+#include "app/samples/surface_of_revolution.h"
 #include "lodestone/math/angle.h"
 
 namespace lodestone::app {
@@ -55,7 +55,7 @@ Mesh strut_mesh() {
 Mesh disc_mesh(std::uint32_t sides) {
   constexpr Vec2d kRings[] = {
       {0.020, -0.080}, {0.070, -0.030}, {0.125, -0.020}, {0.050, 0.030}, {0.045, 0.075}};  // radius, y
-  RingPlan plan;
+  RevolutionPlan plan;
   for (std::size_t i = 0; i < std::size(kRings); ++i) {
     plan.counts.push_back(sides);
     plan.places.push_back(static_cast<double>(i + 1) / static_cast<double>(std::size(kRings) + 1));

@@ -72,7 +72,7 @@ Result<chain::LadderOptions> prepare_job(const BuildPlan& plan, Model& model, Bu
     const Result<void> decoded = io::decode_base_colors(model, warnings, task);
     if (!decoded) return fail(decoded.error());
   }
-  report.prunes = options->influence.vanishes();
+  report.prunes = options->constraints.vanishes();
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
   notes.insert(notes.end(), warnings.begin(), warnings.end());
   for (const std::string& note : notes) console.note(fmt::format("{}: {}", report.input, note));

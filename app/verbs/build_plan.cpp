@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "app/input.h"
-#include "app/options/influence.h"
+#include "app/options/constraints.h"
 #include "app/output/text.h"
 #include "app/verbs/build_report.h"
 #include "lodestone/base/file.h"
@@ -56,9 +56,9 @@ Result<BuildPlan> build_plan(const Arguments& arguments) {
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
   if (!distance) return fail(distance.error());
   plan.distance = *distance;
-  Result<InfluencePlan> influence = influence_of(arguments, plan.lengths);
-  if (!influence) return fail(influence.error());
-  plan.influence = std::move(*influence);
+  Result<ConstraintPlan> constraints = constraints_of(arguments, plan.lengths);
+  if (!constraints) return fail(constraints.error());
+  plan.constraints = std::move(*constraints);
   Result<VolumeRequest> volume = volume_request(arguments);
   if (!volume) return fail(volume.error());
   plan.volume = std::move(*volume);
@@ -105,9 +105,10 @@ Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& 
   if (plan.levels > 0) options.levels = plan.levels;
   options.ratios = plan.ratios;
   options.triangles = plan.triangles;
-  Result<chain::Influence> influence = plan.influence.for_model(model, smallest_level(plan, model), warnings, task);
-  if (!influence) return fail(influence.error());
-  options.influence = std::move(*influence);
+  Result<chain::SimplifyConstraints> constraints =
+      plan.constraints.for_model(model, smallest_level(plan, model), warnings, task);
+  if (!constraints) return fail(constraints.error());
+  options.constraints = std::move(*constraints);
   options.effort = plan.voxel ? chain::Effort::fast : plan.effort;
   options.force = plan.force;
   options.distance = plan.distance;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/children/volume_input.h"
-#include "app/options/influence.h"
+#include "app/options/constraints.h"
 #include "app/options/shared_options.h"
 #include "app/options/voxel_method.h"
 #include "lodestone/chain/ladder/build_ladder.h"
@@ -24,7 +24,7 @@ struct BuildPlan {
   measure::View view;
   LengthRules lengths;
   chain::Effort effort = chain::Effort::normal;
-  InfluencePlan influence;
+  ConstraintPlan constraints;
   measure::DistanceOptions distance;
   VolumeRequest volume;
   std::optional<VoxelMethod> voxel;           ///< --method voxel

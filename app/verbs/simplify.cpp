@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "app/input.h"
-#include "app/options/influence.h"
+#include "app/options/constraints.h"
 #include "app/options/numbers.h"
 #include "app/options/shared_options.h"
 #include "app/output/json.h"
@@ -23,7 +23,7 @@ struct SimplifyPlan {
   std::vector<LengthArgument> error;
   LengthRules lengths;
   chain::Effort effort = chain::Effort::fast;
-  InfluencePlan influence;
+  ConstraintPlan constraints;
   measure::DistanceOptions distance;
   bool force = false;
 };
@@ -63,9 +63,9 @@ Result<SimplifyPlan> plan_of(const Arguments& arguments) {
     if (!error) return fail(error.error());
     plan.error = std::move(*error);
   }
-  Result<InfluencePlan> influence = influence_of(arguments, plan.lengths);
-  if (!influence) return fail(influence.error());
-  plan.influence = std::move(*influence);
+  Result<ConstraintPlan> constraints = constraints_of(arguments, plan.lengths);
+  if (!constraints) return fail(constraints.error());
+  plan.constraints = std::move(*constraints);
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
   if (!distance) return fail(distance.error());
   plan.distance = *distance;
@@ -85,10 +85,10 @@ Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const 
     options.target_triangles =
         std::max<std::size_t>(1, static_cast<std::size_t>(plan.ratio[0] * static_cast<double>(triangles) + 0.5));
   }
-  Result<chain::Influence> influence =
-      plan.influence.for_model(model, options.target_triangles, warnings, console.task());
-  if (!influence) return fail(influence.error());
-  options.influence = std::move(*influence);
+  Result<chain::SimplifyConstraints> constraints =
+      plan.constraints.for_model(model, options.target_triangles, warnings, console.task());
+  if (!constraints) return fail(constraints.error());
+  options.constraints = std::move(*constraints);
   if (!plan.ratio.empty()) {
     console.note(fmt::format("keeping {} of {} triangles", percent(plan.ratio[0]), with_separators(triangles)));
   } else if (!plan.error.empty()) {
@@ -177,7 +177,7 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
   report.write_seconds = watch.lap();
 
   report.triangles = result->level.triangles;
-  if (options->influence.vanishes()) report.vanished_parts = result->level.vanished_parts;
+  if (options->constraints.vanishes()) report.vanished_parts = result->level.vanished_parts;
   report.error = result->level.error;
   report.method = result->level.method;
   report.stop_reason = simplify::to_string(result->stop);

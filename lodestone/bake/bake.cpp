@@ -2,7 +2,7 @@
 //
 // 1. set_frames(): the target gets the unit normals and tangents that its normal map will refer to.
 // 2. detail::texel_owners(): which triangle covers each texel, or lies beside it within what a bilinear filter reads.
-// 3. Tile by tile, on all threads: a texel's points on the target (`looks` squared of them) are looked up in the source
+// 3. Tile by tile, on all threads: a texel's points on the target (`samples_per_side` squared of them) are looked up in the source
 //    at once (BakeSource::find()); their mean colour, in linear light, and their mean normal, in the target's
 //    interpolated frame, become the texel. Each tile writes texels of its own, so threads change no byte.
 // 4. detail::dilate(): colours are carried on around the charts, so that mipmaps don't bleed.
@@ -27,7 +27,7 @@ namespace lodestone::bake {
 
 using detail::TexelOwner;
 using detail::Tiles;
-using spatial::Place;
+using spatial::SurfacePoint;
 
 namespace {
 
@@ -47,8 +47,9 @@ Result<void> check(const Mesh& target, const BakeOptions& options) {
     return fail(ErrorCode::bad_argument,
                 fmt::format("a texture of {} texels; 16 to 16384 are possible", options.texture_size));
   }
-  if (options.looks < 1 || options.looks > 8) {
-    return fail(ErrorCode::bad_argument, fmt::format("{} looks along a texel; 1 to 8 are possible", options.looks));
+  if (options.samples_per_side < 1 || options.samples_per_side > 8) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("{} looks along a texel; 1 to 8 are possible", options.samples_per_side));
   }
   if (floats_of(target, Semantic::uv, 2) == nullptr) {
     return fail(ErrorCode::bad_argument, "the target has no texture coordinates", {}, "make an atlas for it first");
@@ -105,13 +106,13 @@ class Target {
         normals_(*floats_of(mesh, Semantic::normal, 3)),
         tangents_(*floats_of(mesh, Semantic::tangent, 4)) {}
 
-  Vec3d point(const Place& place) const {
+  Vec3d point(const SurfacePoint& place) const {
     const Triangle v = mesh_.vertices_of(place.triangle);
     const Vec3d a = mesh_.position(v[0]);
     return a + (mesh_.position(v[1]) - a) * place.second + (mesh_.position(v[2]) - a) * place.third;
   }
-  Vec3d normal(const Place& place) const { return normalized(mean(place, normals_, 3)); }
-  Frame frame(const Place& place) const {
+  Vec3d normal(const SurfacePoint& place) const { return normalized(mean(place, normals_, 3)); }
+  Frame frame(const SurfacePoint& place) const {
     Frame frame{normal(place), normalized(mean(place, tangents_, 4)), {}};
     const double hand = double(tangents_[4 * std::size_t{mesh_.triangles[place.triangle][0]} + 3]);
     frame.bitangent = normalized(cross(frame.normal, frame.tangent) * hand);
@@ -119,7 +120,7 @@ class Target {
   }
 
  private:
-  Vec3d mean(const Place& place, const std::vector<float>& values, std::size_t width) const {
+  Vec3d mean(const SurfacePoint& place, const std::vector<float>& values, std::size_t width) const {
     const Triangle& wedges = mesh_.triangles[place.triangle];
     const std::array<double, 3> weights = place.weights();
     Vec3d sum;
@@ -155,11 +156,11 @@ void put(Pixels& pixels, std::size_t texel, const std::array<std::uint8_t, 4>& r
 }
 
 struct Distances {
-  std::uint64_t looks = 0;
+  std::uint64_t samples = 0;
   double sum = 0, max = 0;
 
   void add(double distance) {
-    ++looks;
+    ++samples;
     sum += distance;
     max = std::max(max, distance);
   }
@@ -174,7 +175,7 @@ class Baker {
         uv_(*floats_of(out.mesh, Semantic::uv, 2)),
         target_(out.mesh),
         source_(source),
-        per_side_(options.looks),
+        per_side_(options.samples_per_side),
         out_(out) {}
 
   // Looks up all texels of a tile that have an owner.
@@ -187,44 +188,45 @@ class Baker {
       texels.push_back(i);
       for (std::uint32_t v = 0; v < per_side_; ++v) {
         for (std::uint32_t u = 0; u < per_side_; ++u) {
-          const Place place = place_at(i, (u + 0.5) / per_side_, (v + 0.5) / per_side_);
+          const SurfacePoint place = place_at(i, (u + 0.5) / per_side_, (v + 0.5) / per_side_);
           points.push_back(target_.point(place));
           normals.push_back(target_.normal(place));
         }
       }
     });
-    std::vector<Place> places(points.size());
+    std::vector<SurfacePoint> places(points.size());
     source_.find(points, normals, places);
     Distances distances;
-    const std::size_t looks = std::size_t{per_side_} * per_side_;
+    const std::size_t samples = std::size_t{per_side_} * per_side_;
     for (std::size_t n = 0; n < texels.size(); ++n) {
-      const auto found = std::span(places).subspan(n * looks, looks);
+      const auto found = std::span(places).subspan(n * samples, samples);
       write(texels[n], found);
       if (owners_[texels[n]].distance_sq > 0) continue;
-      for (std::size_t k = 0; k < looks; ++k) distances.add(length(source_.point(found[k]) - points[n * looks + k]));
+      for (std::size_t k = 0; k < samples; ++k)
+        distances.add(length(source_.point(found[k]) - points[n * samples + k]));
     }
     return distances;
   }
 
  private:
   // At a part of a texel's width and height.
-  Place place_at(std::size_t texel, double x, double y) const {
+  SurfacePoint place_at(std::size_t texel, double x, double y) const {
     const std::size_t column = texel % tiles_.size, row = texel / tiles_.size;
     return detail::place_in_texture(out_.mesh, uv_, tiles_.size, owners_[texel].triangle,
                                     {static_cast<double>(column) + x, static_cast<double>(row) + y});
   }
 
-  void write(std::size_t texel, std::span<const Place> found) const {
+  void write(std::size_t texel, std::span<const SurfacePoint> found) const {
     if (!out_.base_color.rgba.empty()) {
       Vec3d light;
-      for (const Place& place : found) light += source_.color(place);
+      for (const SurfacePoint& place : found) light += source_.color(place);
       light = light / static_cast<double>(found.size());
       put(out_.base_color, texel, {byte_of_light(light.x), byte_of_light(light.y), byte_of_light(light.z), 255});
     }
     if (out_.normal_map.rgba.empty()) return;
     const Frame frame = target_.frame(place_at(texel, 0.5, 0.5));
     Vec3d normal;
-    for (const Place& place : found) {
+    for (const SurfacePoint& place : found) {
       const Vec3d theirs = source_.normal(place);
       if (dot(theirs, frame.normal) > 0) normal += theirs;
     }
@@ -270,10 +272,10 @@ Result<Baked> bake_textures(const Mesh& target, const BakeSource& source, const 
   });
   if (task.cancelled()) return cancelled_error("baking");
   Distances all;
-  for (const Distances& d : distances) all = {all.looks + d.looks, all.sum + d.sum, std::max(all.max, d.max)};
-  const double looks = static_cast<double>(options.looks) * options.looks;
-  out.covered = static_cast<double>(all.looks) / looks / static_cast<double>(owners.size());
-  out.mean_distance = all.looks > 0 ? all.sum / static_cast<double>(all.looks) : 0;
+  for (const Distances& d : distances) all = {all.samples + d.samples, all.sum + d.sum, std::max(all.max, d.max)};
+  const double samples = static_cast<double>(options.samples_per_side) * options.samples_per_side;
+  out.covered = static_cast<double>(all.samples) / samples / static_cast<double>(owners.size());
+  out.mean_distance = all.samples > 0 ? all.sum / static_cast<double>(all.samples) : 0;
   out.max_distance = all.max;
 
   // What no triangle covers.

@@ -14,7 +14,7 @@ struct BakeOptions {
   bool normal_map = true;
   /// Along each side of a texel, 1 to 8: their mean is written. 1 is sharpest and fastest; more serve where the source
   /// has finer detail than the texels.
-  std::uint32_t looks = 1;
+  std::uint32_t samples_per_side = 1;
   std::uint32_t gutter_texels = 8;  ///< how far colours are carried on around charts; beyond is their mean
 };
 
@@ -34,7 +34,7 @@ struct Baked {
 /// space and has TEXCOORD_0, the origin at the image's top left, within [0, 1] and without overlaps as make_atlas()
 /// makes it; of triangles that overlap the first wins. Texels up to one and a half beside a chart, which bilinear
 /// filters read, are taken at the chart's nearest point; farther ones are copies. Where the source's normal points
-/// against the target's, the target's is taken. Same bytes for any thread count. O(texels x looks squared x log
+/// against the target's, the target's is taken. Same bytes for any thread count. O(texels x samples_per_side squared x log
 /// source), 24 bytes a texel. Errors: empty (no triangle), bad_argument (no texture coordinates, a size out of range;
 /// those of validate(), of the target), cancelled.
 Result<Baked> bake_textures(const Mesh& target, const BakeSource& source, const BakeOptions& options = {},

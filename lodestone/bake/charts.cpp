@@ -19,7 +19,7 @@ struct Limits {
 
 constexpr double kBend = 8;  // what the error counts beside the perimeter
 
-struct Side {
+struct ChartBorder {
   std::uint32_t chart;
   double length;  // of the border with it
 };
@@ -30,7 +30,7 @@ struct Chart {
   double cosine = 1;  // no triangle is farther from the axis than this says
   std::uint32_t version = 0;
   std::uint32_t first = 0, last = 0, size = 1;  // its patches, as a list
-  std::vector<Side> sides;                      // by rising chart
+  std::vector<ChartBorder> sides;               // by rising chart
 };
 
 // Some triangles of a chart that were joined early and so point much the same way: most can be judged as one.
@@ -60,7 +60,7 @@ class Clustering {
   std::vector<std::uint32_t> numbers() const;
 
  private:
-  void push(std::uint32_t a, const Side& side, const Limits& limits);
+  void push(std::uint32_t a, const ChartBorder& side, const Limits& limits);
   bool allowed(const Chart& a, const Chart& b, double min_cosine, double& cosine) const;
   double lowest_cosine(const Patch& patch, Vec3d axis, double enough) const;
   double lowest_cosine(const Chart& chart, Vec3d axis, double enough) const;
@@ -99,18 +99,19 @@ Clustering::Clustering(const Mesh& mesh, const Neighbors& neighbors)
       const std::uint32_t other = neighbors[t][k];
       if (other == kNone) continue;
       const auto at =
-          std::find_if(chart.sides.begin(), chart.sides.end(), [&](const Side& s) { return s.chart == other; });
+          std::find_if(chart.sides.begin(), chart.sides.end(), [&](const ChartBorder& s) { return s.chart == other; });
       if (at == chart.sides.end()) {
         chart.sides.push_back({other, side});
       } else {
         at->length += side;
       }
     }
-    std::sort(chart.sides.begin(), chart.sides.end(), [](const Side& l, const Side& r) { return l.chart < r.chart; });
+    std::sort(chart.sides.begin(), chart.sides.end(),
+              [](const ChartBorder& l, const ChartBorder& r) { return l.chart < r.chart; });
   }
 }
 
-void Clustering::push(std::uint32_t a, const Side& side, const Limits& limits) {
+void Clustering::push(std::uint32_t a, const ChartBorder& side, const Limits& limits) {
   const std::uint32_t b = side.chart;
   const Chart &first = charts_[a], &second = charts_[b];
   if (!(std::min(first.area, second.area) < limits.small_area)) return;
@@ -162,27 +163,27 @@ bool Clustering::allowed(const Chart& a, const Chart& b, double min_cosine, doub
 void Clustering::join_sides(std::uint32_t a, std::uint32_t b) {
   Chart &into = charts_[a], &from = charts_[b];
   double common = 0;
-  for (const Side& side : from.sides) {
+  for (const ChartBorder& side : from.sides) {
     if (side.chart == a) {
       common = side.length;
       continue;
     }
-    std::vector<Side>& theirs = charts_[side.chart].sides;
-    std::erase_if(theirs, [&](const Side& s) { return s.chart == b; });
-    const auto at =
-        std::lower_bound(theirs.begin(), theirs.end(), a, [](const Side& s, std::uint32_t c) { return s.chart < c; });
+    std::vector<ChartBorder>& theirs = charts_[side.chart].sides;
+    std::erase_if(theirs, [&](const ChartBorder& s) { return s.chart == b; });
+    const auto at = std::lower_bound(theirs.begin(), theirs.end(), a,
+                                     [](const ChartBorder& s, std::uint32_t c) { return s.chart < c; });
     if (at != theirs.end() && at->chart == a) {
       at->length += side.length;
     } else {
       theirs.insert(at, {a, side.length});
     }
   }
-  std::vector<Side> sides;
+  std::vector<ChartBorder> sides;
   sides.reserve(into.sides.size() + from.sides.size());
   std::merge(into.sides.begin(), into.sides.end(), from.sides.begin(), from.sides.end(), std::back_inserter(sides),
-             [](const Side& l, const Side& r) { return l.chart < r.chart; });
+             [](const ChartBorder& l, const ChartBorder& r) { return l.chart < r.chart; });
   into.sides.clear();
-  for (const Side& side : sides) {
+  for (const ChartBorder& side : sides) {
     if (side.chart == a || side.chart == b) continue;
     if (!into.sides.empty() && into.sides.back().chart == side.chart) {
       into.sides.back().length += side.length;
@@ -219,7 +220,7 @@ void Clustering::join(std::uint32_t a, std::uint32_t b, double cosine) {
 
 void Clustering::merge(const Limits& limits, const Task& task) {
   for (std::uint32_t a = 0; a < charts_.size(); ++a) {
-    for (const Side& side : charts_[a].sides) {
+    for (const ChartBorder& side : charts_[a].sides) {
       if (a < side.chart) push(a, side, limits);
     }
   }
@@ -230,7 +231,7 @@ void Clustering::merge(const Limits& limits, const Task& task) {
     double cosine = 1;
     if (!allowed(charts_[top.a], charts_[top.b], limits.min_cosine, cosine)) continue;
     join(top.a, top.b, cosine);
-    for (const Side& side : charts_[top.a].sides) push(top.a, side, limits);
+    for (const ChartBorder& side : charts_[top.a].sides) push(top.a, side, limits);
   }
 }
 

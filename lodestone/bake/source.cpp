@@ -11,7 +11,7 @@
 namespace lodestone::bake {
 
 using spatial::Nearest;
-using spatial::Place;
+using spatial::SurfacePoint;
 
 namespace {
 
@@ -53,7 +53,8 @@ Result<BakeSource> BakeSource::create(const Model& model, Task task) {
   return BakeSource(std::move(data));
 }
 
-void BakeSource::find(std::span<const Vec3d> points, std::span<const Vec3d> normals, std::span<Place> places) const {
+void BakeSource::find(std::span<const Vec3d> points, std::span<const Vec3d> normals,
+                      std::span<SurfacePoint> places) const {
   std::vector<Nearest> closest(points.size());
   spatial::ClosestBatch(data_->tree).find(points, closest);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -70,13 +71,13 @@ void BakeSource::find(std::span<const Vec3d> points, std::span<const Vec3d> norm
   }
 }
 
-Vec3d BakeSource::point(const Place& place) const {
+Vec3d BakeSource::point(const SurfacePoint& place) const {
   const auto [a, b, c] = data_->surface.corners(place.triangle);
   const std::array<double, 3> w = place.weights();
   return a * w[0] + b * w[1] + c * w[2];
 }
 
-Vec3d BakeSource::normal(const Place& place) const {
+Vec3d BakeSource::normal(const SurfacePoint& place) const {
   if (const std::optional<Vec3d> own = data_->attributes.stream_normal(place)) return *own;
   if (!data_->normals) return data_->attributes.normal(place).value_or(Vec3d{});
   const std::array<double, 3> w = place.weights();
@@ -85,9 +86,9 @@ Vec3d BakeSource::normal(const Place& place) const {
   return normalized(sum);
 }
 
-Vec3d BakeSource::color(const Place& place) const { return data_->attributes.light(place); }
+Vec3d BakeSource::color(const SurfacePoint& place) const { return data_->attributes.light(place); }
 
-bool BakeSource::has_color() const { return data_->attributes.has_look(); }
+bool BakeSource::has_color() const { return data_->attributes.has_appearance(); }
 
 const spatial::Surface& BakeSource::surface() const { return data_->surface; }
 

@@ -26,15 +26,16 @@ class BakeSource {
   /// that faces away from the point's normal by more than a right angle, as at thin walls, the closest one that doesn't
   /// is preferred if it is at most a hundredth of the source's diagonal farther. Some thousands at a time serve best;
   /// the answers for a batch depend on the batch alone.
-  void find(std::span<const Vec3d> points, std::span<const Vec3d> normals, std::span<spatial::Place> places) const;
+  void find(std::span<const Vec3d> points, std::span<const Vec3d> normals,
+            std::span<spatial::SurfacePoint> places) const;
 
   /// Position of a place, world space.
-  Vec3d point(const spatial::Place& place) const;
+  Vec3d point(const spatial::SurfacePoint& place) const;
   /// Unit shading normal, world space: the normal stream's, interpolated; without one a smooth normal that keeps edges
   /// sharper than 50 degrees. Zero on a triangle without area.
-  Vec3d normal(const spatial::Place& place) const;
+  Vec3d normal(const spatial::SurfacePoint& place) const;
   /// RGB as light, [0, 1]: base colour factor x texture x vertex colour. White where there is none of them.
-  Vec3d color(const spatial::Place& place) const;
+  Vec3d color(const spatial::SurfacePoint& place) const;
   /// Whether color() is anything but white anywhere.
   bool has_color() const;
 

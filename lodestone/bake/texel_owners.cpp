@@ -102,8 +102,8 @@ std::vector<TexelOwner> texel_owners(const Mesh& mesh, const std::vector<float>&
   return owners;
 }
 
-spatial::Place place_in_texture(const Mesh& mesh, const std::vector<float>& uv, std::uint32_t size,
-                                std::uint32_t triangle, Vec2d texel) {
+spatial::SurfacePoint place_in_texture(const Mesh& mesh, const std::vector<float>& uv, std::uint32_t size,
+                                       std::uint32_t triangle, Vec2d texel) {
   const auto [a, b, c] = Flat(mesh.triangles[triangle], uv, size).corner;
   const std::array<double, 3> weights = barycentric(closest_point({texel.x, texel.y, 0}, a, b, c).point, a, b, c);
   return {triangle, weights[1], weights[2]};

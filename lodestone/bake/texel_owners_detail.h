@@ -40,7 +40,7 @@ std::vector<TexelOwner> texel_owners(const Mesh& mesh, const std::vector<float>&
                                      const Task& task);
 
 /// The point of the triangle that is nearest to a point of the texture, in texels.
-spatial::Place place_in_texture(const Mesh& mesh, const std::vector<float>& uv, std::uint32_t size,
-                                std::uint32_t triangle, Vec2d texel);
+spatial::SurfacePoint place_in_texture(const Mesh& mesh, const std::vector<float>& uv, std::uint32_t size,
+                                       std::uint32_t triangle, Vec2d texel);
 
 }  // namespace lodestone::bake::detail

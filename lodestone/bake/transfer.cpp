@@ -31,10 +31,10 @@ std::vector<Tuple> tuples_of(const Mesh& target, const BakeSource& source, const
   parallel_for(tuples.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<Vec3d> points;
     for (std::size_t v = begin; v < end; ++v) points.push_back(target.position(static_cast<std::uint32_t>(v)));
-    std::vector<spatial::Place> places(points.size());
+    std::vector<spatial::SurfacePoint> places(points.size());
     source.find(points, std::span(own).subspan(begin, end - begin), places);
     for (std::size_t v = begin; v < end; ++v) {
-      const spatial::Place& place = places[v - begin];
+      const spatial::SurfacePoint& place = places[v - begin];
       const Vec3d theirs = source.normal(place), light = source.color(place);
       const bool agree = dot(theirs, own[v]) > 0 || own[v] == Vec3d{};
       const Vec3d normal = agree ? theirs : own[v];

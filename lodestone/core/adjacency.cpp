@@ -25,11 +25,11 @@ VertexTriangles vertex_triangles(const Mesh& mesh) {
 }
 
 EdgeTriangles edge_triangles(const Mesh& mesh, const Task& task) {
-  struct Side {
+  struct HalfEdge {
     std::uint64_t key;  // a << 32 | b, a < b
     std::uint32_t triangle;
   };
-  std::vector<Side> sides;
+  std::vector<HalfEdge> sides;
   sides.reserve(mesh.triangles.size() * 3);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Triangle v = mesh.vertices_of(t);
@@ -39,7 +39,7 @@ EdgeTriangles edge_triangles(const Mesh& mesh, const Task& task) {
       sides.push_back({std::uint64_t{a} << 32 | b, static_cast<std::uint32_t>(t)});
     }
   }
-  parallel_sort(sides, task, [](const Side& l, const Side& r) { return l.key < r.key; });
+  parallel_sort(sides, task, [](const HalfEdge& l, const HalfEdge& r) { return l.key < r.key; });
   EdgeTriangles out;
   out.triangles.reserve(sides.size());
   out.edges.reserve(sides.size() / 2);

@@ -21,25 +21,25 @@ namespace {
 using detail::Pair;
 using detail::to_srgb;
 using spatial::DrawnAttributes;
-using spatial::Place;
+using spatial::SurfacePoint;
 
 constexpr std::size_t kChunk = 4096;
 
 // One model: what it draws, and how to ask it.
-struct Side {
+struct SampledModel {
   const Model& model;
   spatial::Surface surface;
   spatial::Bvh tree;
   DrawnAttributes attributes;
 
-  Side(const Model& m, spatial::Surface s, const Task& task)
+  SampledModel(const Model& m, spatial::Surface s, const Task& task)
       : model(m), surface(std::move(s)), tree(surface, task), attributes(model, surface) {}
 };
 
-Result<std::unique_ptr<Side>> make_side(const Model& model, const Task& task) {
+Result<std::unique_ptr<SampledModel>> make_sampled(const Model& model, const Task& task) {
   Result<spatial::Surface> surface = spatial::flatten(model, task);
   if (!surface) return fail(surface.error());
-  return std::make_unique<Side>(model, std::move(*surface), task);
+  return std::make_unique<SampledModel>(model, std::move(*surface), task);
 }
 
 // Mean, rms, maximum and percentiles of the values that are numbers, which is most of the work's memory again: 4 bytes
@@ -118,16 +118,16 @@ std::string set_names(const std::vector<std::uint32_t>& sets) {
   return sets.empty() ? "none" : fmt::format("{}", fmt::join(sets, ", "));
 }
 
-bool has_set(const Side& side, std::uint32_t set) {
+bool has_set(const SampledModel& side, std::uint32_t set) {
   const auto& sets = side.attributes.uv_sets();
   return std::find(sets.begin(), sets.end(), set) != sets.end();
 }
 
 // The UV sets to compare; what only one model has goes into `notes`.
-Result<std::vector<std::uint32_t>> sets_to_compare(const Side& a, const Side& b, const AttributeOptions& options,
-                                                   std::vector<std::string>& notes) {
+Result<std::vector<std::uint32_t>> sets_to_compare(const SampledModel& a, const SampledModel& b,
+                                                   const AttributeOptions& options, std::vector<std::string>& notes) {
   if (options.uv_set) {
-    for (const Side* side : {&a, &b}) {
+    for (const SampledModel* side : {&a, &b}) {
       if (has_set(*side, *options.uv_set)) continue;
       return fail(ErrorCode::bad_argument,
                   fmt::format("{} has no UV set {}; those that it has: {}", side == &a ? "A" : "B", *options.uv_set,
@@ -154,7 +154,7 @@ void note_difference(bool a, bool b, const char* what, std::vector<std::string>&
 }
 
 // Textures that are named but were not decoded, each once.
-void note_textures(const Side& side, const char* name, std::vector<std::string>& notes) {
+void note_textures(const SampledModel& side, const char* name, std::vector<std::string>& notes) {
   std::set<std::uint32_t> drawn;
   for (const Instance& instance : side.model.instances) {
     for (const FaceGroup& group : side.model.meshes[instance.mesh].groups) drawn.insert(group.material);
@@ -176,27 +176,28 @@ std::optional<double> plane_distance(const std::optional<Vec2d>& a, const std::o
 Attributes compare(const DrawnAttributes& a, const DrawnAttributes& b, const Pairs& pairs,
                    const std::vector<std::uint32_t>& sets, const Task& task) {
   Attributes out;
-  out.normal = figure(pairs, task, [&](const Place& p, const Place& q) -> std::optional<double> {
+  out.normal = figure(pairs, task, [&](const SurfacePoint& p, const SurfacePoint& q) -> std::optional<double> {
     const std::optional<Vec3d> n = a.normal(p), m = b.normal(q);
     if (!n || !m) return std::nullopt;
     return angle_degrees(*n, *m);
   });
   for (const std::uint32_t set : sets) {
-    out.uv.push_back(
-        {set,
-         figure(pairs, task,
-                [&](const Place& p, const Place& q) { return plane_distance(a.uv(p, set), b.uv(q, set)); }),
-         a.uv_diagonal(set)});
+    out.uv.push_back({set,
+                      figure(pairs, task,
+                             [&](const SurfacePoint& p, const SurfacePoint& q) {
+                               return plane_distance(a.uv(p, set), b.uv(q, set));
+                             }),
+                      a.uv_diagonal(set)});
   }
   if (a.has_color() && b.has_color()) {
-    out.color = figure(pairs, task, [&](const Place& p, const Place& q) -> std::optional<double> {
+    out.color = figure(pairs, task, [&](const SurfacePoint& p, const SurfacePoint& q) -> std::optional<double> {
       const std::optional<Vec3d> c = a.color(p), d = b.color(q);
       if (!c || !d) return std::nullopt;
       return length(*c - *d);
     });
   }
-  if (a.has_look() || b.has_look()) {
-    out.look = figure(pairs, task, [&](const Place& p, const Place& q) -> std::optional<double> {
+  if (a.has_appearance() || b.has_appearance()) {
+    out.look = figure(pairs, task, [&](const SurfacePoint& p, const SurfacePoint& q) -> std::optional<double> {
       return length(to_srgb(a.light(p)) - to_srgb(b.light(q)));
     });
   }
@@ -206,11 +207,11 @@ Attributes compare(const DrawnAttributes& a, const DrawnAttributes& b, const Pai
 }  // namespace
 
 Result<Attributes> attribute_deviation(const Model& a, const Model& b, const AttributeOptions& options, Task task) {
-  const Result<std::unique_ptr<Side>> original = make_side(a, task);
+  const Result<std::unique_ptr<SampledModel>> original = make_sampled(a, task);
   if (!original) return fail(original.error());
-  const Result<std::unique_ptr<Side>> level = make_side(b, task);
+  const Result<std::unique_ptr<SampledModel>> level = make_sampled(b, task);
   if (!level) return fail(level.error());
-  const Side &first = **original, &second = **level;
+  const SampledModel &first = **original, &second = **level;
   std::vector<std::string> notes;
   const Result<std::vector<std::uint32_t>> sets = sets_to_compare(first, second, options, notes);
   if (!sets) return fail(sets.error());

@@ -10,10 +10,10 @@
 
 namespace lodestone::measure::detail {
 
-using spatial::Place;
+using spatial::SurfacePoint;
 
 struct Pair {
-  Place from, to;
+  SurfacePoint from, to;
 };
 
 /// One pair a sample of `from` (see Sampler), in the samples' order; none for a surface without area. The rule by which

@@ -19,7 +19,7 @@ namespace lodestone::measure {
 
 namespace {
 
-using detail::Side;
+using detail::EdgeKey;
 
 constexpr std::size_t kChunk = 4096;
 constexpr double kNothing = 1e-9;  // of the diagonal: rounding
@@ -48,11 +48,11 @@ double largest_of(const std::vector<double>& values) {
 }
 
 // Sides of triangles that have a new vertex, longer than `shortest`.
-std::vector<Side> new_sides(const Field& field, double shortest, const Task& task) {
-  std::vector<Side> sides;
+std::vector<EdgeKey> new_sides(const Field& field, double shortest, const Task& task) {
+  std::vector<EdgeKey> sides;
   for (const Triangle& t : field.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const Side side = detail::side_of(t[k], t[(k + 1) % 3]);
+      const EdgeKey side = detail::edge_of(t[k], t[(k + 1) % 3]);
       if (side.high < field.first_new) continue;
       if (length(field.positions[side.low] - field.positions[side.high]) > shortest) sides.push_back(side);
     }
@@ -84,13 +84,13 @@ struct SplitRules {
 
 // The sides to be split: those whose middle, and those of triangles whose centre, the corners don't tell; and long
 // ones.
-std::vector<Side> sides_to_split(const Field& field, const spatial::Bvh& to, const SplitRules& rules, double& largest,
-                                 const Task& task) {
-  const std::vector<Side> sides = new_sides(field, rules.shortest, task);
+std::vector<EdgeKey> sides_to_split(const Field& field, const spatial::Bvh& to, const SplitRules& rules,
+                                    double& largest, const Task& task) {
+  const std::vector<EdgeKey> sides = new_sides(field, rules.shortest, task);
   const std::vector<std::uint32_t> triangles = new_triangles(field, rules.shortest);
   std::vector<Vec3d> points;
   points.reserve(sides.size() + triangles.size());
-  for (const Side& side : sides) points.push_back(detail::middle_of(field.positions, side));
+  for (const EdgeKey& side : sides) points.push_back(detail::middle_of(field.positions, side));
   for (const std::uint32_t t : triangles) {
     const Triangle& c = field.triangles[t];
     points.push_back((field.positions[c[0]] + field.positions[c[1]] + field.positions[c[2]]) * (1.0 / 3));
@@ -98,7 +98,7 @@ std::vector<Side> sides_to_split(const Field& field, const spatial::Bvh& to, con
   const std::vector<double> found = distances(to, points, task);
   largest = std::max(largest, largest_of(found));
 
-  std::vector<Side> out;
+  std::vector<EdgeKey> out;
   const double most = std::max(rules.tolerance * largest, rules.nothing);
   const std::vector<double>& d = field.distance;
   for (std::size_t i = 0; i < sides.size(); ++i) {
@@ -108,7 +108,7 @@ std::vector<Side> sides_to_split(const Field& field, const spatial::Bvh& to, con
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const Triangle& t = field.triangles[triangles[i]];
     if (std::abs(found[sides.size() + i] - (d[t[0]] + d[t[1]] + d[t[2]]) / 3) <= most) continue;
-    for (std::size_t k = 0; k < 3; ++k) out.push_back(detail::side_of(t[k], t[(k + 1) % 3]));
+    for (std::size_t k = 0; k < 3; ++k) out.push_back(detail::edge_of(t[k], t[(k + 1) % 3]));
   }
   detail::sort_unique(out, task);
   return out;
@@ -120,13 +120,13 @@ void refine(Field& field, const spatial::Bvh& to, double diagonal, const HeatOpt
   const SplitRules rules{options.shortest_side * diagonal, options.longest_side * diagonal, options.tolerance,
                          kNothing * diagonal};
   for (int round = 0; round < kMostRounds && !task.cancelled(); ++round) {
-    const std::vector<Side> sides = sides_to_split(field, to, rules, largest, task);
+    const std::vector<EdgeKey> sides = sides_to_split(field, to, rules, largest, task);
     if (sides.empty()) return;
     std::vector<Triangle> split = detail::split_sides(field.triangles, sides, field.positions.size());
     if (split.size() > options.most_triangles) return;
     field.triangles = std::move(split);
     field.first_new = field.positions.size();
-    for (const Side& side : sides) field.positions.push_back(detail::middle_of(field.positions, side));
+    for (const EdgeKey& side : sides) field.positions.push_back(detail::middle_of(field.positions, side));
     const std::vector<double> added =
         distances(to, std::span<const Vec3d>(field.positions).subspan(field.first_new), task);
     field.distance.insert(field.distance.end(), added.begin(), added.end());

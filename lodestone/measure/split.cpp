@@ -33,18 +33,19 @@ void split_one(const Triangle& t, const Middles& m, std::vector<Triangle>& out) 
 
 }  // namespace
 
-void sort_unique(std::vector<Side>& sides, const Task& task) {
-  parallel_sort(sides, task, [](const Side& a, const Side& b) { return a < b; });
+void sort_unique(std::vector<EdgeKey>& sides, const Task& task) {
+  parallel_sort(sides, task, [](const EdgeKey& a, const EdgeKey& b) { return a < b; });
   sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
 }
 
-std::vector<Triangle> split_sides(std::span<const Triangle> triangles, std::span<const Side> sides, std::size_t first) {
+std::vector<Triangle> split_sides(std::span<const Triangle> triangles, std::span<const EdgeKey> sides,
+                                  std::size_t first) {
   std::vector<Triangle> out;
   out.reserve(triangles.size() + 2 * sides.size());
   for (const Triangle& t : triangles) {
     Middles middles;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Side side = side_of(t[k], t[(k + 1) % 3]);
+      const EdgeKey side = edge_of(t[k], t[(k + 1) % 3]);
       const auto found = std::lower_bound(sides.begin(), sides.end(), side);
       const bool is_split = found != sides.end() && *found == side;
       middles[k] =

@@ -29,24 +29,24 @@ const AttributeStream* usable(const Mesh& mesh, Semantic semantic, std::uint32_t
 }
 
 // Where a triangle of the surface comes from.
-struct Spot {
+struct DrawnTriangle {
   std::uint32_t instance, mesh, group;
   Triangle wedges;  // in the order of the surface's corners
 };
 
-class Spots {
+class DrawnTriangles {
  public:
-  Spots(const Model& model, const SceneData& data) : model_(model), data_(data) {
+  DrawnTriangles(const Model& model, const SceneData& data) : model_(model), data_(data) {
     for (const Instance& instance : model.instances) mirrored_.push_back(instance.transform.determinant3() < 0);
   }
-  Spot of(std::size_t triangle) const {
+  DrawnTriangle of(std::size_t triangle) const {
     const std::uint32_t drawn = data_.surface.drawn[triangle];
     const auto& first = data_.first_drawn;
     const auto i = static_cast<std::uint32_t>(std::upper_bound(first.begin(), first.end(), drawn) - first.begin() - 1);
     const std::uint32_t m = model_.instances[i].mesh;
     const Mesh& mesh = model_.meshes[m];
     const std::uint32_t t = drawn - first[i];
-    Spot spot{i, m, mesh.group_of(t), mesh.triangles[t]};
+    DrawnTriangle spot{i, m, mesh.group_of(t), mesh.triangles[t]};
     if (mirrored_[i] != 0) std::swap(spot.wedges[1], spot.wedges[2]);
     return spot;
   }
@@ -59,7 +59,7 @@ class Spots {
 
 // Calls body(triangle, spot) for every triangle of the surface.
 template <class Body>
-void for_each_triangle(const Spots& spots, std::size_t count, const Task& task, Body&& body) {
+void for_each_triangle(const DrawnTriangles& spots, std::size_t count, const Task& task, Body&& body) {
   parallel_for(count, kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t t = begin; t < end; ++t) body(t, spots.of(t));
   });
@@ -80,7 +80,7 @@ bool any(const StreamOfMesh& streams) {
   return std::any_of(streams.begin(), streams.end(), [](const AttributeStream* s) { return s != nullptr; });
 }
 
-void gather_normals(const Model& model, const Spots& spots, SceneData& data, const Task& task) {
+void gather_normals(const Model& model, const DrawnTriangles& spots, SceneData& data, const Task& task) {
   const spatial::CreaseNormals made(data.surface, task);
   data.normals.resize(data.surface.triangles.size());
   parallel_for(data.normals.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -98,7 +98,7 @@ void gather_normals(const Model& model, const Spots& spots, SceneData& data, con
     inverse.push_back(instance.transform.inverse3());
     flat.push_back(!(determinant < 0 || determinant > 0));
   }
-  for_each_triangle(spots, data.normals.size(), task, [&](std::size_t t, const Spot& spot) {
+  for_each_triangle(spots, data.normals.size(), task, [&](std::size_t t, const DrawnTriangle& spot) {
     const AttributeStream* stream = streams[spot.mesh];
     if (stream == nullptr || !stream->in_group(spot.group) || flat[spot.instance] != 0) return;
     const auto& m = inverse[spot.instance].m;  // normals go by the transposed inverse
@@ -112,32 +112,32 @@ void gather_normals(const Model& model, const Spots& spots, SceneData& data, con
   });
 }
 
-void gather_looks(const Model& model, const Spots& spots, SceneData& data, const Task& task) {
+void gather_appearances(const Model& model, const DrawnTriangles& spots, SceneData& data, const Task& task) {
   if (model.materials.empty()) return;
-  data.look.resize(data.surface.triangles.size());
-  const auto plain = static_cast<std::uint32_t>(data.looks.size() - 1);
-  for_each_triangle(spots, data.look.size(), task, [&](std::size_t t, const Spot& spot) {
+  data.appearance.resize(data.surface.triangles.size());
+  const auto plain = static_cast<std::uint32_t>(data.appearances.size() - 1);
+  for_each_triangle(spots, data.appearance.size(), task, [&](std::size_t t, const DrawnTriangle& spot) {
     const Mesh& mesh = model.meshes[spot.mesh];
     const std::uint32_t m = spot.group < mesh.groups.size() ? mesh.groups[spot.group].material : kNone;
-    data.look[t] = m < plain ? m : plain;
+    data.appearance[t] = m < plain ? m : plain;
   });
 }
 
-// The looks that something drawn has.
-std::vector<std::uint8_t> looks_in_use(const SceneData& data) {
-  std::vector<std::uint8_t> used(data.looks.size(), 0);
-  for (const std::uint32_t look : data.look) used[look] = 1;
+// The appearances that something drawn has.
+std::vector<std::uint8_t> appearances_in_use(const SceneData& data) {
+  std::vector<std::uint8_t> used(data.appearances.size(), 0);
+  for (const std::uint32_t appearance : data.appearance) used[appearance] = 1;
   return used;
 }
 
-void gather_uvs(const Model& model, const Spots& spots, SceneData& data, const Task& task) {
-  const std::vector<std::uint8_t> used = looks_in_use(data);
+void gather_uvs(const Model& model, const DrawnTriangles& spots, SceneData& data, const Task& task) {
+  const std::vector<std::uint8_t> used = appearances_in_use(data);
   bool textured = false;
   for (std::size_t m = 0; m < model.materials.size(); ++m) {
-    const Look& look = data.looks[m];
+    const Appearance& appearance = data.appearances[m];
     if (used.size() <= m || used[m] == 0) continue;
-    textured = textured || look.texture != nullptr || look.missing;
-    if (look.missing) {
+    textured = textured || appearance.texture != nullptr || appearance.missing;
+    if (appearance.missing) {
       data.notes.push_back(
           fmt::format("the texture of material {} is missing: drawn as a checker",
                       model.materials[m].name.empty() ? fmt::format("{}", m) : "'" + model.materials[m].name + "'"));
@@ -145,19 +145,19 @@ void gather_uvs(const Model& model, const Spots& spots, SceneData& data, const T
   }
   if (!textured) return;
   data.uvs.resize(data.surface.triangles.size());
-  std::vector<std::uint8_t> without(data.looks.size(), 0);
-  std::vector<StreamOfMesh> sets(data.looks.size());
+  std::vector<std::uint8_t> without(data.appearances.size(), 0);
+  std::vector<StreamOfMesh> sets(data.appearances.size());
   for (std::size_t m = 0; m < model.materials.size(); ++m) {
     sets[m] = streams_of(model, [&](std::size_t mesh) {
       return usable(model.meshes[mesh], Semantic::uv, model.materials[m].base_color_coordinates.set, 2);
     });
   }
-  for_each_triangle(spots, data.uvs.size(), task, [&](std::size_t t, const Spot& spot) {
-    const std::uint32_t look = data.look[t];
-    if (look >= model.materials.size()) return;
-    const AttributeStream* stream = sets[look][spot.mesh];
+  for_each_triangle(spots, data.uvs.size(), task, [&](std::size_t t, const DrawnTriangle& spot) {
+    const std::uint32_t appearance = data.appearance[t];
+    if (appearance >= model.materials.size()) return;
+    const AttributeStream* stream = sets[appearance][spot.mesh];
     if (stream == nullptr || !stream->in_group(spot.group)) return;
-    const auto& map = model.materials[look].base_color_coordinates.map;
+    const auto& map = model.materials[appearance].base_color_coordinates.map;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t at = std::size_t{spot.wedges[k]} * stream->components;
       const double u = number_at(*stream, at), from_file = number_at(*stream, at + 1);
@@ -169,13 +169,13 @@ void gather_uvs(const Model& model, const Spots& spots, SceneData& data, const T
   });
 }
 
-void gather_colors(const Model& model, const Spots& spots, SceneData& data, const Task& task) {
+void gather_colors(const Model& model, const DrawnTriangles& spots, SceneData& data, const Task& task) {
   const StreamOfMesh streams =
       streams_of(model, [&](std::size_t m) { return usable(model.meshes[m], Semantic::color, 0, 3); });
   if (!any(streams)) return;
   constexpr PackedColor kWhite{65535, 65535, 65535, 65535};
   data.colors.assign(data.surface.triangles.size(), {kWhite, kWhite, kWhite});
-  for_each_triangle(spots, data.colors.size(), task, [&](std::size_t t, const Spot& spot) {
+  for_each_triangle(spots, data.colors.size(), task, [&](std::size_t t, const DrawnTriangle& spot) {
     const AttributeStream* stream = streams[spot.mesh];
     if (stream == nullptr || !stream->in_group(spot.group)) return;
     const double scale = 65535 / (stream->normalized ? 1 : largest_of(stream->type));
@@ -238,13 +238,13 @@ Result<std::vector<std::vector<float>>> values_of_meshes(const Model& model, con
   return values;
 }
 
-Result<void> gather_values(const Model& model, const Spots& spots, const SceneOptions& options, SceneData& data,
-                           const Task& task) {
+Result<void> gather_values(const Model& model, const DrawnTriangles& spots, const SceneOptions& options,
+                           SceneData& data, const Task& task) {
   const Result<std::vector<std::vector<float>>> values = values_of_meshes(model, options);
   if (!values) return fail(values.error());
   if (values->empty()) return {};
   data.values.assign(data.surface.triangles.size(), {kNoValue, kNoValue, kNoValue});
-  for_each_triangle(spots, data.values.size(), task, [&](std::size_t t, const Spot& spot) {
+  for_each_triangle(spots, data.values.size(), task, [&](std::size_t t, const DrawnTriangle& spot) {
     const std::vector<float>& list = (*values)[spot.mesh];
     if (list.empty()) return;
     for (std::size_t k = 0; k < 3; ++k) data.values[t][k] = list[spot.wedges[k]];
@@ -264,9 +264,9 @@ Result<void> gather_values(const Model& model, const Spots& spots, const SceneOp
 }  // namespace
 
 Result<void> gather_corners(const Model& model, const SceneOptions& options, SceneData& data, const Task& task) {
-  const Spots spots(model, data);
+  const DrawnTriangles spots(model, data);
   gather_normals(model, spots, data, task);
-  gather_looks(model, spots, data, task);
+  gather_appearances(model, spots, data, task);
   gather_uvs(model, spots, data, task);
   gather_colors(model, spots, data, task);
   return gather_values(model, spots, options, data, task);

@@ -1,4 +1,4 @@
-// Alpha masks: triangles that are there only where their look's alpha reaches the cutoff.
+// Alpha masks: triangles that are there only where their appearance's alpha reaches the cutoff.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ class Holes {
   /// `raster` must outlive it.
   explicit Holes(const Raster& raster) : raster_(raster) {}
 
-  bool has(std::uint32_t id) const { return raster_.scene().look_of(id).alpha_cutoff > 0; }
+  bool has(std::uint32_t id) const { return raster_.scene().appearance_of(id).alpha_cutoff > 0; }
   /// Whether there is a hole in triangle `id` at (x, y) pixels of the picture.
   bool at(std::uint32_t id, Vec2f at) const;
 

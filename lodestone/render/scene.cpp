@@ -10,7 +10,7 @@ namespace lodestone::render {
 
 namespace {
 
-using detail::Look;
+using detail::Appearance;
 using detail::SceneData;
 
 void find_bounds(SceneData& data) {
@@ -27,14 +27,14 @@ void number_instances(const Model& model, SceneData& data) {
   }
 }
 
-void make_looks(const Model& model, SceneData& data) {
+void make_appearances(const Model& model, SceneData& data) {
   std::map<const Pixels*, const detail::MipTexture*> made;
   for (const Material& material : model.materials) {
-    Look look;
-    look.color = {material.base_color[0], material.base_color[1], material.base_color[2]};
-    look.alpha = material.base_color[3];
-    look.alpha_cutoff = material.alpha_cutoff;
-    look.double_sided = material.double_sided;
+    Appearance appearance;
+    appearance.color = {material.base_color[0], material.base_color[1], material.base_color[2]};
+    appearance.alpha = material.base_color[3];
+    appearance.alpha_cutoff = material.alpha_cutoff;
+    appearance.double_sided = material.double_sided;
     const auto& pixels = material.base_color_pixels;
     if (pixels != nullptr && pixels->width > 0 && pixels->height > 0) {
       const detail::MipTexture*& texture = made[pixels.get()];
@@ -42,14 +42,15 @@ void make_looks(const Model& model, SceneData& data) {
         data.textures.push_back(std::make_unique<const detail::MipTexture>(pixels));
         texture = data.textures.back().get();
       }
-      look.texture = texture;
+      appearance.texture = texture;
     } else {
-      look.missing = material.base_color_texture != nullptr;
+      appearance.missing = material.base_color_texture != nullptr;
     }
-    data.looks.push_back(look);
+    data.appearances.push_back(appearance);
   }
-  data.looks.emplace_back();
-  data.masked = std::any_of(data.looks.begin(), data.looks.end(), [](const Look& l) { return l.alpha_cutoff > 0; });
+  data.appearances.emplace_back();
+  data.masked = std::any_of(data.appearances.begin(), data.appearances.end(),
+                            [](const Appearance& l) { return l.alpha_cutoff > 0; });
 }
 
 }  // namespace
@@ -62,7 +63,7 @@ Result<Scene> Scene::create(const Model& model, const SceneOptions& options, Tas
   find_bounds(*data);
   if (data->bounds.empty()) return fail(ErrorCode::empty, "no position of the model is finite");
   number_instances(model, *data);
-  make_looks(model, *data);
+  make_appearances(model, *data);
   if (const Result<void> done = detail::gather_corners(model, options, *data, task.part(0.6)); !done) {
     return fail(done.error());
   }

@@ -21,8 +21,8 @@ using Corners = std::array<T, 3>;
 /// Red, green, blue and alpha as light, 1 = 65535.
 using PackedColor = std::array<std::uint16_t, 4>;
 
-/// How the triangles of one material look.
-struct Look {
+/// How the triangles of one material appearance.
+struct Appearance {
   Vec3f color{1, 1, 1};  ///< base colour factor, light
   float alpha = 1;
   float alpha_cutoff = 0;               ///< below it nothing is drawn; 0 = all is
@@ -41,15 +41,17 @@ struct SceneData {
   std::vector<Corners<Vec2f>> uvs;             ///< after the material's texture transform, origin at the top
   std::vector<Corners<PackedColor>> colors;    ///< vertex colours
   std::vector<Corners<float>> values;          ///< heat; NaN = none
-  std::vector<std::uint32_t> look;             ///< index into `looks`; empty = all 0
-  std::vector<Look> looks;                     ///< of each material, then of what has none
-  bool masked = false;                         ///< some look has an alpha cutoff
+  std::vector<std::uint32_t> appearance;       ///< index into `appearances`; empty = all 0
+  std::vector<Appearance> appearances;         ///< of each material, then of what has none
+  bool masked = false;                         ///< some appearance has an alpha cutoff
 
   std::vector<std::unique_ptr<const MipTexture>> textures;
   float least_value = 0, largest_value = 0;
   std::vector<std::string> notes;
 
-  const Look& look_of(std::uint32_t triangle) const { return looks[look.empty() ? 0 : look[triangle]]; }
+  const Appearance& appearance_of(std::uint32_t triangle) const {
+    return appearances[appearance.empty() ? 0 : appearance[triangle]];
+  }
 };
 
 }  // namespace lodestone::render::detail

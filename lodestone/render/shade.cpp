@@ -65,14 +65,14 @@ Vec3f Shader::vertex_color(std::uint32_t id, const Fragment& fragment) const {
   return fragment.mix(light(c[0]), light(c[1]), light(c[2]));
 }
 
-Vec3f Shader::texture_color(std::uint32_t id, Vec2f at, const Fragment& fragment, const Look& look) const {
-  if (scene_.uvs.empty() || (look.texture == nullptr && !look.missing)) return {1, 1, 1};
+Vec3f Shader::texture_color(std::uint32_t id, Vec2f at, const Fragment& fragment, const Appearance& appearance) const {
+  if (scene_.uvs.empty() || (appearance.texture == nullptr && !appearance.missing)) return {1, 1, 1};
   const Corners<Vec2f>& uv = scene_.uvs[id];
   const auto uv_of = [&](const Fragment& f) {
     return Vec2f{f.mix(uv[0].x, uv[1].x, uv[2].x), f.mix(uv[0].y, uv[1].y, uv[2].y)};
   };
   const Vec2f here = uv_of(fragment);
-  if (look.missing) {
+  if (appearance.missing) {
     const auto odd = [](float x) { return static_cast<std::int32_t>(std::clamp(x, -1e5F, 1e5F) * 16 + 1.7e6F) & 1; };
     return odd(here.x) != odd(here.y) ? Vec3f{0.75F, 0.02F, 0.55F} : Vec3f{0.04F, 0.04F, 0.04F};
   }
@@ -84,14 +84,14 @@ Vec3f Shader::texture_color(std::uint32_t id, Vec2f at, const Fragment& fragment
   const auto longer = [](Vec2f a, Vec2f b) { return a.x * a.x + a.y * a.y >= b.x * b.x + b.y * b.y ? a : b; };
   const Vec2f per_x = longer(step({at.x + 1, at.y}), step({at.x - 1, at.y}));
   const Vec2f per_y = longer(step({at.x, at.y + 1}), step({at.x, at.y - 1}));
-  return look.texture->sample(here, per_x, per_y).light;
+  return appearance.texture->sample(here, per_x, per_y).light;
 }
 
 Vec3f Shader::base_color(std::uint32_t id, Vec2f at, const Fragment& fragment) const {
-  const Look& look = scene_.look_of(id);
+  const Appearance& appearance = scene_.appearance_of(id);
   switch (options_.shading) {
     case Shading::textured:
-      return times(times(look.color, vertex_color(id, fragment)), texture_color(id, at, fragment, look));
+      return times(times(appearance.color, vertex_color(id, fragment)), texture_color(id, at, fragment, appearance));
     case Shading::vertex_color:
       return vertex_color(id, fragment);
     default:
@@ -131,7 +131,7 @@ Vec3f Shader::color(std::uint32_t id, Vec2f at) const {
       out = heat_color(id, fragment) * (0.45F + 0.55F * brightness(normal));
       break;
     default: {
-      const bool from_behind = fragment.back && !scene_.look_of(id).double_sided;
+      const bool from_behind = fragment.back && !scene_.appearance_of(id).double_sided;
       out = (from_behind ? kBackColor : base_color(id, at, fragment)) * brightness(normal);
     }
   }

@@ -19,7 +19,7 @@ class Shader {
  private:
   Vec3f normal_at(std::uint32_t id, const Fragment& fragment, bool of_face) const;
   Vec3f base_color(std::uint32_t id, Vec2f at, const Fragment& fragment) const;
-  Vec3f texture_color(std::uint32_t id, Vec2f at, const Fragment& fragment, const Look& look) const;
+  Vec3f texture_color(std::uint32_t id, Vec2f at, const Fragment& fragment, const Appearance& appearance) const;
   Vec3f vertex_color(std::uint32_t id, const Fragment& fragment) const;
   Vec3f heat_color(std::uint32_t id, const Fragment& fragment) const;
   float brightness(Vec3f normal) const;

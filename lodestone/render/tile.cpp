@@ -56,7 +56,7 @@ Target target_of(SampleTile& tile, std::int32_t x, std::int32_t y, const SampleP
   return target;
 }
 
-// Takes out the samples that look through a hole.
+// Takes out the samples that appearance through a hole.
 Int4 without_holes(const Target& target, std::uint32_t id, std::int32_t x, std::int32_t y, Int4 inside) {
   constexpr float kPerSub = 1.0F / kSub;
   for (std::size_t s = 0; s < 4; ++s) {
@@ -125,7 +125,7 @@ void draw_small(const SmallTriangle& t, const Target& target) {
 }
 
 // One edge function of a large triangle, from the tile's corner.
-struct Side {
+struct EdgeFunction {
   std::int64_t at_corner, step_x, step_y;  // steps: one pixel
   std::array<std::int64_t, 4> of_lanes;
 };
@@ -140,7 +140,7 @@ class LargeDrawing {
       const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
       const std::int64_t dx = t.x[b] - t.x[a], dy = t.y[b] - t.y[a];
       bias_[k] = owns_side(dx, dy) ? 0 : 1;
-      Side& side = sides_[k];
+      EdgeFunction& side = sides_[k];
       side.at_corner =
           dx * (std::int64_t{target.y} * kSub - t.y[a]) - dy * (std::int64_t{target.x} * kSub - t.x[a]) - bias_[k];
       side.step_x = -dy * kSub;
@@ -160,7 +160,7 @@ class LargeDrawing {
     for (std::int32_t y = 0; y < kTile; y += kBlock) {
       for (std::int32_t x = 0; x < kTile; x += kBlock) {
         bool outside = false;
-        for (const Side& side : sides_) outside = outside || largest(side, x, y) < 0;
+        for (const EdgeFunction& side : sides_) outside = outside || largest(side, x, y) < 0;
         if (!outside) draw_block(x, y);
       }
     }
@@ -168,7 +168,7 @@ class LargeDrawing {
 
  private:
   // An upper bound of a side's function over the samples of a block.
-  static std::int64_t largest(const Side& side, std::int32_t x, std::int32_t y) {
+  static std::int64_t largest(const EdgeFunction& side, std::int32_t x, std::int32_t y) {
     const std::int64_t across = side.step_x * kBlock, down = side.step_y * kBlock;
     return side.at_corner + side.step_x * x + side.step_y * y + std::max<std::int64_t>(across, 0) +
            std::max<std::int64_t>(down, 0);
@@ -197,7 +197,7 @@ class LargeDrawing {
 
   const LargeTriangle& triangle_;
   const Target& target_;
-  std::array<Side, 3> sides_{};
+  std::array<EdgeFunction, 3> sides_{};
   std::array<std::int64_t, 3> bias_{};
   std::array<double, 3> slope_{};
   double base_ = 0;

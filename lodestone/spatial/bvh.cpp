@@ -217,14 +217,14 @@ bool Bvh::triangles_in(const Box3d& box, std::size_t most, std::vector<std::uint
     low[k] = Float4{l, l, l, l};
     high[k] = Float4{h, h, h, h};
   }
-  struct Place {
+  struct StackEntry {
     std::uint32_t level, index;
   };
-  Place stack[96];
+  StackEntry stack[96];
   std::size_t top = 0;
   stack[top++] = {static_cast<std::uint32_t>(level_first_.size() - 1), 0};
   while (top > 0) {
-    const Place place = stack[--top];
+    const StackEntry place = stack[--top];
     const Node& node = nodes_[level_first_[place.level - 1] + place.index];
     auto inside = load(node.min[0]) <= high[0] && load(node.max[0]) >= low[0];
     for (std::size_t k = 1; k < 3; ++k) inside = inside && load(node.min[k]) <= high[k] && load(node.max[k]) >= low[k];

@@ -23,7 +23,7 @@ double value_at(const AttributeStream& stream, std::size_t index) {
 // The first N components, interpolated; nothing where the stream or a finite number is missing.
 template <std::size_t N>
 std::optional<std::array<double, N>> interpolated(const AttributeStream* stream, std::uint32_t group,
-                                                  const Triangle& wedges, const Place& place) {
+                                                  const Triangle& wedges, const SurfacePoint& place) {
   if (stream == nullptr || !stream->in_group(group)) return std::nullopt;
   const std::array<double, 3> weights = place.weights();
   std::array<double, N> out{};
@@ -81,30 +81,30 @@ void DrawnAttributes::note_sets() {
     has_color_ = has_color_ || streams.color != nullptr;
     for (std::size_t set = 0; set < kMostSets; ++set) there[set] = there[set] || streams.uv[set] != nullptr;
     for (const FaceGroup& group : mesh.groups) {
-      has_look_ =
-          has_look_ || (group.material < model_.materials.size() && !is_plain(model_.materials[group.material]));
+      has_appearance_ =
+          has_appearance_ || (group.material < model_.materials.size() && !is_plain(model_.materials[group.material]));
     }
   }
-  has_look_ = has_look_ || has_color_;
+  has_appearance_ = has_appearance_ || has_color_;
   for (std::uint32_t set = 0; set < kMostSets; ++set) {
     if (there[set]) uv_sets_.push_back(set);
   }
 }
 
-DrawnAttributes::Spot DrawnAttributes::spot(std::uint32_t triangle) const {
+DrawnAttributes::DrawnTriangle DrawnAttributes::drawn_triangle(std::uint32_t triangle) const {
   const std::uint32_t drawn = surface_.drawn[triangle];
   const auto instance =
       static_cast<std::uint32_t>(std::upper_bound(first_.begin(), first_.end(), drawn) - first_.begin() - 1);
   const std::uint32_t m = model_.instances[instance].mesh;
   const Mesh& mesh = model_.meshes[m];
   const std::uint32_t t = drawn - first_[instance];
-  Spot spot{&mesh, &streams_[m], instance, mesh.group_of(t), mesh.triangles[t]};
+  DrawnTriangle spot{&mesh, &streams_[m], instance, mesh.group_of(t), mesh.triangles[t]};
   if (mirrored_[instance] != 0) std::swap(spot.wedges[1], spot.wedges[2]);
   return spot;
 }
 
-std::optional<Vec3d> DrawnAttributes::stream_normal(const Place& place) const {
-  const Spot at = spot(place.triangle);
+std::optional<Vec3d> DrawnAttributes::stream_normal(const SurfacePoint& place) const {
+  const DrawnTriangle at = drawn_triangle(place.triangle);
   if (flat_[at.instance] != 0) return std::nullopt;
   const auto n = interpolated<3>(at.streams->normal, at.group, at.wedges, place);
   if (!n) return std::nullopt;
@@ -116,7 +116,7 @@ std::optional<Vec3d> DrawnAttributes::stream_normal(const Place& place) const {
   return world;
 }
 
-std::optional<Vec3d> DrawnAttributes::normal(const Place& place) const {
+std::optional<Vec3d> DrawnAttributes::normal(const SurfacePoint& place) const {
   if (const std::optional<Vec3d> own = stream_normal(place)) return own;
   const auto [a, b, c] = surface_.corners(place.triangle);
   const Vec3d face = normalized(scaled_normal(a, b, c));
@@ -124,18 +124,19 @@ std::optional<Vec3d> DrawnAttributes::normal(const Place& place) const {
   return face;
 }
 
-std::optional<Vec2d> DrawnAttributes::uv_at(const Spot& at, const Place& place, std::uint32_t set) const {
+std::optional<Vec2d> DrawnAttributes::uv_at(const DrawnTriangle& at, const SurfacePoint& place,
+                                            std::uint32_t set) const {
   if (set >= kMostSets) return std::nullopt;
   const auto uv = interpolated<2>(at.streams->uv[set], at.group, at.wedges, place);
   if (!uv) return std::nullopt;
   return Vec2d{(*uv)[0], model_.uv_origin_top ? (*uv)[1] : 1 - (*uv)[1]};
 }
 
-std::optional<Vec2d> DrawnAttributes::uv(const Place& place, std::uint32_t set) const {
-  return uv_at(spot(place.triangle), place, set);
+std::optional<Vec2d> DrawnAttributes::uv(const SurfacePoint& place, std::uint32_t set) const {
+  return uv_at(drawn_triangle(place.triangle), place, set);
 }
 
-std::optional<Vec3d> DrawnAttributes::color_at(const Spot& at, const Place& place) const {
+std::optional<Vec3d> DrawnAttributes::color_at(const DrawnTriangle& at, const SurfacePoint& place) const {
   const auto rgb = interpolated<3>(at.streams->color, at.group, at.wedges, place);
   if (!rgb) return std::nullopt;
   const double white = at.streams->color->normalized ? 1 : largest_of(at.streams->color->type);
@@ -144,10 +145,12 @@ std::optional<Vec3d> DrawnAttributes::color_at(const Spot& at, const Place& plac
   return out;
 }
 
-std::optional<Vec3d> DrawnAttributes::color(const Place& place) const { return color_at(spot(place.triangle), place); }
+std::optional<Vec3d> DrawnAttributes::color(const SurfacePoint& place) const {
+  return color_at(drawn_triangle(place.triangle), place);
+}
 
-Vec3d DrawnAttributes::light(const Place& place) const {
-  const Spot at = spot(place.triangle);
+Vec3d DrawnAttributes::light(const SurfacePoint& place) const {
+  const DrawnTriangle at = drawn_triangle(place.triangle);
   Vec3d light = color_at(at, place).value_or(Vec3d{1, 1, 1});
   const std::uint32_t m = at.group < at.mesh->groups.size() ? at.mesh->groups[at.group].material : kNone;
   if (m < model_.materials.size()) {
@@ -167,7 +170,7 @@ double DrawnAttributes::uv_diagonal(std::uint32_t set) const {
   double low_u = 0, high_u = 0, low_v = 0, high_v = 0;
   bool any = false;
   for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {
-    for (const Place& corner : {Place{t, 0, 0}, Place{t, 1, 0}, Place{t, 0, 1}}) {
+    for (const SurfacePoint& corner : {SurfacePoint{t, 0, 0}, SurfacePoint{t, 1, 0}, SurfacePoint{t, 0, 1}}) {
       const std::optional<Vec2d> at = uv(corner, set);
       if (!at) continue;
       low_u = any ? std::min(low_u, at->x) : at->x;

@@ -12,7 +12,7 @@
 namespace lodestone::spatial {
 
 /// A point of a surface: a triangle and its corners' weights.
-struct Place {
+struct SurfacePoint {
   std::uint32_t triangle = 0;
   double second = 0, third = 0;  ///< weights of the second and the third corner
 
@@ -28,20 +28,20 @@ class DrawnAttributes {
   bool has_normals() const { return has_normals_; }
   bool has_color() const { return has_color_; }
   /// Whether anything but plain white is drawn: textures, base colours, vertex colours.
-  bool has_look() const { return has_look_; }
+  bool has_appearance() const { return has_appearance_; }
   /// Numbers of the UV sets that anything drawn has, rising.
   const std::vector<std::uint32_t>& uv_sets() const { return uv_sets_; }
 
   /// Unit, world space: the normal stream's; the face's where there is none. Nothing for a triangle without area.
-  std::optional<Vec3d> normal(const Place& place) const;
+  std::optional<Vec3d> normal(const SurfacePoint& place) const;
   /// The normal stream's alone; nothing where there is none.
-  std::optional<Vec3d> stream_normal(const Place& place) const;
+  std::optional<Vec3d> stream_normal(const SurfacePoint& place) const;
   /// The origin at the image's top, whatever the model's convention. Without texture transforms.
-  std::optional<Vec2d> uv(const Place& place, std::uint32_t set) const;
+  std::optional<Vec2d> uv(const SurfacePoint& place, std::uint32_t set) const;
   /// RGB of COLOR_0, each cut to [0, 1].
-  std::optional<Vec3d> color(const Place& place) const;
+  std::optional<Vec3d> color(const SurfacePoint& place) const;
   /// Base colour factor x texture x vertex colour as light, [0, 1]. A texture that is missing counts as white.
-  Vec3d light(const Place& place) const;
+  Vec3d light(const SurfacePoint& place) const;
 
   /// Diagonal of the box of all UVs drawn in this set; 0 without any.
   double uv_diagonal(std::uint32_t set) const;
@@ -51,16 +51,16 @@ class DrawnAttributes {
     const AttributeStream *normal = nullptr, *color = nullptr;
     std::vector<const AttributeStream*> uv;  // by set; null = none
   };
-  struct Spot {
+  struct DrawnTriangle {
     const Mesh* mesh;
     const Streams* streams;
     std::uint32_t instance, group;
     Triangle wedges;  // in the order of the surface's corners
   };
-  Spot spot(std::uint32_t triangle) const;
+  DrawnTriangle drawn_triangle(std::uint32_t triangle) const;
   void note_sets();
-  std::optional<Vec2d> uv_at(const Spot& spot, const Place& place, std::uint32_t set) const;
-  std::optional<Vec3d> color_at(const Spot& spot, const Place& place) const;
+  std::optional<Vec2d> uv_at(const DrawnTriangle& spot, const SurfacePoint& place, std::uint32_t set) const;
+  std::optional<Vec3d> color_at(const DrawnTriangle& spot, const SurfacePoint& place) const;
 
   const Model& model_;
   const spatial::Surface& surface_;
@@ -69,7 +69,7 @@ class DrawnAttributes {
   std::vector<Mat4d> to_local_;                // of each instance, the inverse of its transform's linear part
   std::vector<std::uint8_t> mirrored_, flat_;  // of each instance: turned inside out; squeezed to a plane or less
   std::vector<std::uint32_t> uv_sets_;
-  bool has_normals_ = false, has_color_ = false, has_look_ = false;
+  bool has_normals_ = false, has_color_ = false, has_appearance_ = false;
 };
 
 }  // namespace lodestone::spatial

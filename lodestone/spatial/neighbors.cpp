@@ -6,7 +6,7 @@ namespace lodestone::spatial {
 
 namespace {
 
-struct Side {
+struct HalfEdge {
   std::uint32_t higher;  // the other vertex
   std::uint32_t triangle;
   std::uint32_t side;
@@ -27,20 +27,20 @@ std::vector<std::array<std::uint32_t, 3>> triangle_neighbors(const Surface& surf
       if (!is_proper(v)) continue;
       for (std::uint32_t k = 0; k < 3; ++k) {
         const auto [low, high] = std::minmax(v[k], v[(k + 1) % 3]);
-        take(low, Side{high, t, k, v[k] == low});
+        take(low, HalfEdge{high, t, k, v[k] == low});
       }
     }
   };
-  each_side([&](std::uint32_t low, const Side&) { ++first[low + 1]; });
+  each_side([&](std::uint32_t low, const HalfEdge&) { ++first[low + 1]; });
   for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
-  std::vector<Side> sides(first.back());
+  std::vector<HalfEdge> sides(first.back());
   {
     std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    each_side([&](std::uint32_t low, const Side& side) { sides[next[low]++] = side; });
+    each_side([&](std::uint32_t low, const HalfEdge& side) { sides[next[low]++] = side; });
   }
   for (std::size_t v = 0; v + 1 < first.size(); ++v) {
     const auto begin = sides.begin() + first[v], end = sides.begin() + first[v + 1];
-    std::sort(begin, end, [](const Side& a, const Side& b) {
+    std::sort(begin, end, [](const HalfEdge& a, const HalfEdge& b) {
       return a.higher != b.higher ? a.higher < b.higher : a.triangle < b.triangle;
     });
     for (auto i = begin; i != end;) {

@@ -21,10 +21,10 @@ Vec3d unit_normal(const spatial::Surface& surface, std::size_t triangle) {
 }
 
 std::vector<Crease> creases_of(const spatial::Surface& surface, double cosine) {
-  struct Side {
+  struct HalfEdge {
     std::uint32_t a, b, triangle;
   };
-  std::vector<Side> sides;
+  std::vector<HalfEdge> sides;
   sides.reserve(surface.triangles.size() * 3);
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
     const Triangle& v = surface.triangles[t];
@@ -33,7 +33,7 @@ std::vector<Crease> creases_of(const spatial::Surface& surface, double cosine) {
       if (a != b) sides.push_back({std::min(a, b), std::max(a, b), t});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+  std::sort(sides.begin(), sides.end(), [](const HalfEdge& x, const HalfEdge& y) {
     return std::tie(x.a, x.b, x.triangle) < std::tie(y.a, y.b, y.triangle);
   });
   std::vector<Crease> out;

@@ -3,9 +3,9 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/voxel/caps_detail.h"
-#include "lodestone/voxel/column_raster_detail.h"
 #include "lodestone/voxel/fill_winding_detail.h"
 #include "lodestone/voxel/winding.h"
+#include "lodestone/voxel/z_crossings_detail.h"
 
 namespace lodestone::voxel::detail {
 

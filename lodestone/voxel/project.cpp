@@ -6,7 +6,7 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/spatial/closest_batch.h"
-#include "lodestone/voxel/equal_places_detail.h"
+#include "lodestone/voxel/coincident_vertices_detail.h"
 
 namespace lodestone::voxel {
 
@@ -67,7 +67,7 @@ std::size_t project(Mesh& mesh, const spatial::Bvh& source, double most, const T
       },
       [](std::size_t a, std::size_t b) { return a + b; });
   if (task.cancelled()) return 0;
-  detail::part_equal_places(mesh.positions, moved);
+  detail::separate_coincident_vertices(mesh.positions, moved);
   const std::size_t taken_back = take_back_turned(mesh, mesh.positions, moved, task);
   mesh.positions = std::move(moved);
   return count - std::min(count, taken_back);

@@ -10,9 +10,9 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/spatial/closest_batch.h"
+#include "lodestone/voxel/coincident_vertices_detail.h"
 #include "lodestone/voxel/creases_detail.h"
 #include "lodestone/voxel/cube_cases_detail.h"
-#include "lodestone/voxel/equal_places_detail.h"
 #include "lodestone/voxel/isosurface_detail.h"
 #include "lodestone/voxel/row_numbers_detail.h"
 
@@ -227,9 +227,9 @@ std::array<std::uint32_t, 4> rings_around(const Dual& dual, std::uint32_t crossi
 }
 
 // A side that two rings share twice, by one of the crossings at its ends.
-struct Side {
+struct SharedEdge {
   std::uint32_t low = 0, high = 0, crossing = 0;
-  bool operator<(const Side& o) const {
+  bool operator<(const SharedEdge& o) const {
     return low != o.low ? low < o.low : high != o.high ? high < o.high : crossing < o.crossing;
   }
 };
@@ -289,7 +289,7 @@ class Quads {
 
   // Only rings that go through a face twice can share two sides.
   void find_shared_sides(const Task& task) {
-    std::vector<std::vector<Side>> found(dual_.contour.rows.depth - 1);
+    std::vector<std::vector<SharedEdge>> found(dual_.contour.rows.depth - 1);
     each_crossing(task, [&](std::size_t z, std::uint32_t crossing, const std::array<std::uint32_t, 4>& rings) {
       for (std::size_t k = 0; k < 4; ++k) {
         const std::uint32_t a = rings[k], b = rings[(k + 1) % 4];
@@ -298,7 +298,7 @@ class Quads {
         }
       }
     });
-    std::vector<Side> all;
+    std::vector<SharedEdge> all;
     for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
     std::sort(all.begin(), all.end());
     for (std::size_t i = 0; i < all.size();) {
@@ -322,7 +322,7 @@ class Quads {
 
   // The first of the four entries of a side, or that of a crossing.
   std::uint32_t side_of(std::uint32_t a, std::uint32_t b, std::uint32_t crossing) const {
-    const Side wanted{std::min(a, b), std::max(a, b), crossing};
+    const SharedEdge wanted{std::min(a, b), std::max(a, b), crossing};
     const auto at = std::lower_bound(shared_.begin(), shared_.end(), wanted);
     if (at == shared_.end() || at->low != wanted.low || at->high != wanted.high) return kNone;
     return static_cast<std::uint32_t>(at - shared_.begin());
@@ -401,7 +401,7 @@ class Quads {
   const Dual& dual_;
   Mesh& mesh_;
   std::vector<std::uint8_t> creased_;
-  std::vector<Side> shared_;            // four entries a side that is there twice, sorted
+  std::vector<SharedEdge> shared_;      // four entries a side that is there twice, sorted
   std::vector<std::uint32_t> middles_;  // of each entry, once made
 };
 
@@ -428,7 +428,7 @@ Result<SharpSurface> sharp_surface(const VolumeView<std::uint8_t>& volume, const
     out.features += static_cast<std::size_t>(
         std::count_if(slice.creased.begin(), slice.creased.end(), [](std::uint8_t c) { return c > 0; }));
   }
-  detail::part_equal_places(middles, mesh.positions);
+  detail::separate_coincident_vertices(middles, mesh.positions);
   Quads(dual, mesh).make(task);
   if (task.cancelled()) return cancelled_error("contouring");
   return out;

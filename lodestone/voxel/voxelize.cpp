@@ -13,9 +13,9 @@
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/core/validate.h"
-#include "lodestone/voxel/column_raster_detail.h"
 #include "lodestone/voxel/fill_winding_detail.h"
 #include "lodestone/voxel/surface_voxels.h"
+#include "lodestone/voxel/z_crossings_detail.h"
 
 namespace lodestone::voxel {
 

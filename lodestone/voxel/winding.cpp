@@ -120,16 +120,16 @@ WindingNumber::WindingNumber(const std::vector<Vec3d>& positions, const std::vec
 
 double WindingNumber::at(Vec3d point) const {
   if (triangles_.empty()) return 0;
-  struct Place {
+  struct StackEntry {
     std::size_t level, group;  // of the level
   };
-  std::array<Place, 17 * kFan> stack;
+  std::array<StackEntry, 17 * kFan> stack;
   std::size_t top = 0;
   stack[top++] = {level_first_.size() - 1, 0};
   double far = 0;
   AngleSum near;
   while (top > 0) {
-    const Place place = stack[--top];
+    const StackEntry place = stack[--top];
     const Group& g = groups_[level_first_[place.level] + place.group];
     const Vec3d to = g.center - point;
     const double distance_sq = dot(to, to);

@@ -56,19 +56,19 @@ Vec3d read_back(const Pixels& pixels, Vec2d uv) {
   return out;
 }
 
-spatial::Place place_of(const BakeSource& source, Vec3d point, Vec3d normal) {
-  std::array<spatial::Place, 1> place;
+spatial::SurfacePoint place_of(const BakeSource& source, Vec3d point, Vec3d normal) {
+  std::array<spatial::SurfacePoint, 1> place;
   source.find(std::array{point}, std::array{normal}, place);
   return place[0];
 }
 
-Vec3d normal_at(const Mesh& mesh, const test::Spot& spot) {
+Vec3d normal_at(const Mesh& mesh, const test::SurfacePoint& spot) {
   const auto n = test::value_at<3>(mesh, Semantic::normal, spot);
   return normalized(Vec3d{n[0], n[1], n[2]});
 }
 
 // The normal that a viewer shows.
-Vec3d shown_normal(const Set& set, const test::Spot& spot) {
+Vec3d shown_normal(const Set& set, const test::SurfacePoint& spot) {
   const Mesh& mesh = set.baked.mesh;
   const auto uv = test::value_at<2>(mesh, Semantic::uv, spot);
   const auto t = test::value_at<4>(mesh, Semantic::tangent, spot);
@@ -86,7 +86,7 @@ TEST(Bake, colours_read_back_on_the_surface_are_the_sources) {
     double worst = 0, sum = 0;
     constexpr int kSpots = 20000;
     for (std::uint64_t i = 0; i < kSpots; ++i) {
-      const test::Spot spot = test::random_spot(set.baked.mesh, i);
+      const test::SurfacePoint spot = test::random_point(set.baked.mesh, i);
       const auto uv = test::value_at<2>(set.baked.mesh, Semantic::uv, spot);
       const Vec3d seen = read_back(set.baked.base_color, {uv[0], uv[1]});
       const Vec3d light = source.color(place_of(source, test::point_at(target, spot), normal_at(set.baked.mesh, spot)));
@@ -108,7 +108,7 @@ TEST(Bake, a_normal_map_brings_the_bumps_back) {
   EXPECT_TRUE(set.baked.base_color.rgba.empty()) << "a white source has no colours";
   double plain = 0, mapped = 0;
   for (std::uint64_t i = 0; i < 20000; ++i) {
-    const test::Spot spot = test::random_spot(set.baked.mesh, i);
+    const test::SurfacePoint spot = test::random_point(set.baked.mesh, i);
     const Vec3d own = normal_at(set.baked.mesh, spot);
     const Vec3d want = source.normal(place_of(source, test::point_at(set.baked.mesh, spot), own));
     plain += length(own - want);
@@ -160,7 +160,7 @@ TEST(Bake, more_looks_average_what_is_finer_than_texels) {
   for (const std::uint32_t looks : {1U, 8U}) {
     BakeOptions options;
     options.texture_size = 128;
-    options.looks = looks;
+    options.samples_per_side = looks;
     const Result<Baked> out = bake_textures(atlas->mesh, source, options);
     ASSERT_TRUE(out);
     for (std::size_t i = 0; i < out->base_color.rgba.size(); i += 4) {

@@ -66,18 +66,18 @@ inline const std::vector<float>& floats(const Mesh& mesh, Semantic semantic) {
 }
 
 /// A random point of the i-th kind on the mesh: a triangle and weights of its corners.
-struct Spot {
+struct SurfacePoint {
   std::size_t triangle;
   std::array<double, 3> weights;
 };
-inline Spot random_spot(const Mesh& mesh, std::uint64_t i) {
+inline SurfacePoint random_point(const Mesh& mesh, std::uint64_t i) {
   const double root = std::sqrt(random_unit(7, 3 * i)), part = random_unit(7, 3 * i + 1);
   return {random_bits(7, 3 * i + 2) % mesh.triangles.size(), {1 - root, root * (1 - part), root * part}};
 }
 
 /// The mean of a stream's first components over a triangle's corners.
 template <std::size_t N>
-std::array<double, N> value_at(const Mesh& mesh, Semantic semantic, const Spot& spot) {
+std::array<double, N> value_at(const Mesh& mesh, Semantic semantic, const SurfacePoint& spot) {
   const AttributeStream& stream = *find_stream(mesh, semantic);
   const auto& values = std::get<std::vector<float>>(stream.values);
   std::array<double, N> out{};
@@ -88,7 +88,7 @@ std::array<double, N> value_at(const Mesh& mesh, Semantic semantic, const Spot& 
   return out;
 }
 
-inline Vec3d point_at(const Mesh& mesh, const Spot& spot) {
+inline Vec3d point_at(const Mesh& mesh, const SurfacePoint& spot) {
   Vec3d out;
   const Triangle v = mesh.vertices_of(spot.triangle);
   for (std::size_t k = 0; k < 3; ++k) out += mesh.position(v[k]) * spot.weights[k];

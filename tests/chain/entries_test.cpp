@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lodestone/chain/ladder/build_ladder.h"
-#include "lodestone/chain/ladder/influence.h"
+#include "lodestone/chain/ladder/constraints.h"
 #include "lodestone/chain/scans/scan_surface.h"
 #include "lodestone/chain/voxels/boolean.h"
 #include "lodestone/chain/voxels/remesh.h"
@@ -32,9 +32,9 @@ TEST(Entries, of_ladders_refuse_a_broken_model) {
     one = {};
     one.max_error = 0.1;
     test::expect_refused(simplify_model(model, one), line, name);
-    Influence influence;
-    influence.spheres = {{{0, 0, 0}, 1, 2, false}};
-    test::expect_refused(vertex_influences(model, influence), line, name);
+    SimplifyConstraints constraints;
+    constraints.spheres = {{{0, 0, 0}, 1, 2, false}};
+    test::expect_refused(vertex_constraints(model, constraints), line, name);
   }
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "lodestone/simplify/collapse/edge_collapse.h"
-#include "lodestone/simplify/prune/thin_parts.h"
+#include "lodestone/simplify/prune/prune_order.h"
 #include "tests/support/broken.h"
 
 namespace lodestone::simplify {
@@ -18,7 +18,7 @@ TEST(Entries, of_simplify_refuse_a_broken_mesh) {
     if (!mesh) continue;
     const std::string told = "box" + line.substr(line.find(')') + 1);
     test::expect_refused(collapse_edges(model.meshes[0], options), told, name);
-    test::expect_refused(thin_parts(model.meshes[0]), told, name);
+    test::expect_refused(prune_order(model.meshes[0]), told, name);
   }
 }
 
@@ -28,9 +28,9 @@ TEST(Entries, of_simplify_refuse_options_that_do_not_fit_the_mesh) {
   options.target_triangles = 4;
   options.metric.m[0] = NAN;
   test::expect_bad_argument(collapse_edges(mesh, options), "metric");
-  ThinPartsOptions thin;
+  PruneOptions thin;
   thin.left_out = {12};
-  test::expect_refused(thin_parts(mesh, thin), "thin parts: triangle 12 of 12 is to be left out", "left out");
+  test::expect_refused(prune_order(mesh, thin), "thin parts: triangle 12 of 12 is to be left out", "left out");
 }
 
 }  // namespace

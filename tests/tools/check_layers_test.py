@@ -43,7 +43,7 @@ CLEAN = {
     "lodestone/io/plain/ply.h": "#pragma once\n",
     "lodestone/io/gltf/read.cpp": '#include "lodestone/io/gltf/gltf_detail.h"\n#include <nlohmann/json.hpp>\n',
     "lodestone/simplify/collapse/edge_collapse.h": '#pragma once\n#include "lodestone/spatial/bvh.h"\n',
-    "lodestone/simplify/fit/fit.h": "#pragma once\n",
+    "lodestone/simplify/fit/tracked_level.h": "#pragma once\n",
     "app/main.cpp": '#include <CLI/CLI.hpp>\n#include "lodestone/simplify/collapse/edge_collapse.h"\n',
 }
 
@@ -94,9 +94,9 @@ class CheckLayers(unittest.TestCase):
                            "simplify (layer 5) may include 1-3, spatial")
 
     def test_folder_beside(self):
-        self.assert_caught("lodestone/simplify/fit/fit.h", '#pragma once\n#include "lodestone/simplify/collapse/edge_collapse.h"\n',
-                           "lodestone/simplify/fit/fit.h:2", "simplify/fit may include no other folder of its module")
-        self.write("lodestone/simplify/fit/fit.h", "#pragma once\n")
+        self.assert_caught("lodestone/simplify/fit/tracked_level.h", '#pragma once\n#include "lodestone/simplify/collapse/edge_collapse.h"\n',
+                           "lodestone/simplify/fit/tracked_level.h:2", "simplify/fit may include no other folder of its module")
+        self.write("lodestone/simplify/fit/tracked_level.h", "#pragma once\n")
         self.assert_caught("lodestone/io/plain/ply.cpp", '#include "lodestone/io/gltf/gltf_detail.h"\n', "io/plain may include")
 
     def test_folder_that_may_be_seen_and_files_beside_the_folders(self):

@@ -19,9 +19,9 @@ namespace lodestone::chain {
 
 using detail::CollapsePlan;
 using detail::CurvePoint;
-using detail::Cut;
 using detail::InLine;
 using detail::LevelMaker;
+using detail::MeasuredLevel;
 using detail::Starts;
 using measure::Reference;
 
@@ -66,7 +66,7 @@ std::string count_shortfall(const CollapsePlan& plan, std::size_t wanted, std::s
 }
 
 // Adds a cut with its error raised to the finer levels' and accounts its time.
-void add_level(LadderResult& result, Cut cut) {
+void add_level(LadderResult& result, MeasuredLevel cut) {
   LevelError& e = cut.level.error;
   e.error = std::max(e.measured_error, result.ladder.levels.back().error.error);
   result.simplify_seconds += cut.simplify_seconds;
@@ -87,7 +87,7 @@ struct Jump {
   double diagonal = 0;
 };
 
-Jump jump_of(const Cut& cut, std::size_t wanted) {
+Jump jump_of(const MeasuredLevel& cut, std::size_t wanted) {
   return {wanted, {cut.level.triangles, cut.level.error.measured_error}, cut.level.error.diagonal};
 }
 
@@ -122,7 +122,7 @@ struct CountStep {
 // ends. False = it ends.
 Result<bool> add_count_level(LadderResult& result, LevelMaker& maker, const CountStep& step,
                              const LadderOptions& options, const Task& task) {
-  Result<Cut> cut = maker.shaped(step.prefix, task.part(options.force ? 1.0 : 0.7));
+  Result<MeasuredLevel> cut = maker.with_feedback(step.prefix, task.part(options.force ? 1.0 : 0.7));
   if (!cut) return fail(cut.error());
   if (options.force) {
     add_level(result, std::move(*cut));
@@ -169,7 +169,7 @@ Result<void> add_error_levels(LadderResult& result, LevelMaker& maker, const Lad
   Starts starts;
   for (std::size_t i = 0; i < options.errors.size(); ++i) {
     const Task part = task.part(1.0 / static_cast<double>(options.errors.size()), fmt::format("level {}", i + 1));
-    Result<Cut> cut = find_error_cut(maker, starts, options.errors[i], part);
+    Result<MeasuredLevel> cut = find_error_cut(maker, starts, options.errors[i], part);
     if (!cut) return fail(cut.error());
     const bool holds = cut->level.error.measured_error <= options.errors[i];
     const bool is_new = cut->prefix > last || (holds && starts_coarser(result, options, cut->level.triangles));
@@ -181,7 +181,7 @@ Result<void> add_error_levels(LadderResult& result, LevelMaker& maker, const Lad
       result.measure_seconds += cut->measure_seconds;
       continue;
     }
-    last = starts.shaped = cut->prefix;
+    last = starts.with_feedback = cut->prefix;
     add_level(result, std::move(*cut));
     if (last == plan.size() && i + 1 < options.errors.size()) {
       result.shortfalls.push_back({i + 2, "the level before is the coarsest there is: " + plan.why_it_ends()});
@@ -250,7 +250,7 @@ Result<void> detail::compare_pictures(LadderResult& result, const measure::Image
 
 namespace {
 
-// What collapsing and making ready to measure take of the whole, roughly: shaping levels takes far longer than both.
+// What collapsing and making ready to measure take of the whole, roughly: feedback takes far longer than both.
 struct Shares {
   double collapsing, preparing;
 };
@@ -269,8 +269,9 @@ Result<LadderResult> build_ladder(Model original, const LadderOptions& options, 
   result.ladder.original = std::move(original);
   const Model& model = result.ladder.original;
   const Stopwatch collapsing;
-  const Result<CollapsePlan> plan = CollapsePlan::create(options.start ? *options.start : model, smallest,
-                                                         options.influence, task.part(shares.collapsing, "collapsing"));
+  const Result<CollapsePlan> plan =
+      CollapsePlan::create(options.start ? *options.start : model, smallest, options.constraints,
+                           task.part(shares.collapsing, "collapsing"));
   if (!plan) return fail(plan.error());
   result.simplify_seconds = collapsing.total();
   const Stopwatch preparing;
@@ -301,8 +302,9 @@ Result<SimplifyModelResult> simplify_model(const Model& original, const Simplify
   if (const Result<void> ok = check_drawn(original, task); !ok) return fail(ok.error());
   const Shares shares = shares_of(options.effort);
   const Stopwatch collapsing;
-  const Result<CollapsePlan> plan = CollapsePlan::create(original, by_count ? options.target_triangles : 1,
-                                                         options.influence, task.part(shares.collapsing, "collapsing"));
+  const Result<CollapsePlan> plan =
+      CollapsePlan::create(original, by_count ? options.target_triangles : 1, options.constraints,
+                           task.part(shares.collapsing, "collapsing"));
   if (!plan) return fail(plan.error());
   SimplifyModelResult result;
   result.simplify_seconds = collapsing.total();
@@ -313,8 +315,8 @@ Result<SimplifyModelResult> simplify_model(const Model& original, const Simplify
   const Task rest = task.part(1 - shares.collapsing - shares.preparing, "measuring");
   LevelMaker maker(*plan, *reference, options.distance, options.effort);
   Starts starts;
-  Result<Cut> cut = by_count ? maker.shaped(plan->prefix_for(options.target_triangles), rest)
-                             : find_error_cut(maker, starts, options.max_error, rest);
+  Result<MeasuredLevel> cut = by_count ? maker.with_feedback(plan->prefix_for(options.target_triangles), rest)
+                                       : find_error_cut(maker, starts, options.max_error, rest);
   if (!cut) return fail(cut.error());
   std::string jumped;
   if (by_count && !options.force && cut->level.triangles > options.target_triangles) {
@@ -322,7 +324,7 @@ Result<SimplifyModelResult> simplify_model(const Model& original, const Simplify
     Result<InLine> kept = keep_in_line(maker, std::move(*cut), {}, 0, rest);
     if (!kept) return fail(kept.error());
     if (!kept->cut) {
-      Result<Cut> finest = maker.plain(0, rest);
+      Result<MeasuredLevel> finest = maker.plain(0, rest);
       if (!finest) return fail(finest.error());
       kept->cut = std::move(*finest);
     }

@@ -9,8 +9,8 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/chain/ladder/constraints.h"
 #include "lodestone/chain/ladder/effort.h"
-#include "lodestone/chain/ladder/influence.h"
 #include "lodestone/core/level.h"
 #include "lodestone/measure/distance.h"
 #include "lodestone/measure/image.h"
@@ -27,7 +27,7 @@ struct LadderOptions {
   std::vector<std::size_t> triangles;  ///< drawn triangles, one a coarser level, falling
   std::vector<double> errors;          ///< measured maximum allowed, model units, one a coarser level, rising:
                                        ///< the coarsest mesh found within it, by bisection over one run's log
-  Influence influence;                 ///< where the model matters more, what stays
+  SimplifyConstraints constraints;     ///< where the model matters more, what stays
   Effort effort = Effort::fast;        ///< how much work each level is worth
   measure::DistanceOptions distance;   ///< samples and seed of the measurement
   /// With counts and ratios: levels are written however far their errors jump. Without, a ladder ends where an error is
@@ -56,9 +56,9 @@ struct LadderResult {
 
 /// Runs edge collapse once on every mesh, merges the collapses by error times the largest instance scale, cuts the
 /// levels from that one record and measures each in world space. A ladder that can't shrink further ends early, with a
-/// shortfall. With an effort above fast each level is shaped by its own measured error, and kept only if neither its
+/// shortfall. With an effort above fast each level is improved by its own measured error, and kept only if neither its
 /// maximum nor its mean (of normal: by more than a hundredth; not for errors, which are about maxima) is above the
-/// plain level's; it is no prefix of the record then, which its method tells, and an error is looked for with shaped
+/// plain level's; it is no prefix of the record then, which its method tells, and an error is looked for with improved
 /// levels. Errors: bad_argument (options that contradict each other; those of validate(), of the original and the
 /// start), empty (nothing drawn), cancelled.
 Result<LadderResult> build_ladder(Model original, const LadderOptions& options = {}, Task task = {});
@@ -66,7 +66,7 @@ Result<LadderResult> build_ladder(Model original, const LadderOptions& options =
 struct SimplifyModelOptions {
   std::size_t target_triangles = 0;  ///< drawn triangles; 0 = no count target
   double max_error = 0;              ///< measured maximum, model units; 0 = no error target
-  Influence influence;
+  SimplifyConstraints constraints;
   Effort effort = Effort::fast;
   measure::DistanceOptions distance;
   bool force = false;  ///< as LadderOptions::force, for counts that can't be reached

@@ -2,7 +2,7 @@
 //
 // 1. plan_mesh(): each drawn mesh is collapsed once, as far as the smallest level may need; its log holds the steps
 // with
-//    their errors in world space. Where parts may vanish, simplify::thin_parts() gives their steps, too.
+//    their errors in world space. Where parts may vanish, simplify::prune_order() gives their steps, too.
 // 2. merge(): the steps of all meshes by error. Within a mesh errors never fall, so a stable sort keeps its order.
 // 3. count_triangles(): how many triangles are drawn after each prefix (a mesh counts once for each instance), so that
 //    prefix_for() finds a level by halving.
@@ -34,36 +34,36 @@ void add(simplify::LockCounts& sum, const simplify::LockCounts& more) {
   sum.by_request += more.by_request;
 }
 
-void lock_borders(const Mesh& mesh, std::vector<std::uint8_t>& locked, const Task& task) {
-  locked.resize(mesh.vertex_count(), 0);
+void lock_borders(const Mesh& mesh, std::vector<std::uint8_t>& no_move, const Task& task) {
+  no_move.resize(mesh.vertex_count(), 0);
   for (const Edge& edge : edge_triangles(mesh, task).edges) {
-    if (edge.count == 1) locked[edge.a] = locked[edge.b] = 1;
+    if (edge.count == 1) no_move[edge.a] = no_move[edge.b] = 1;
   }
 }
 
 }  // namespace
 
-Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t smallest, const Influence& influence,
-                                          Task task) {
+Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t smallest,
+                                          const SimplifyConstraints& constraints, Task task) {
   CollapsePlan plan;
   plan.original_ = &original;
   plan.uses_ = instance_counts(original);
   plan.placings_ = largest_placings(original);
-  plan.prunes_ = influence.vanishes();
-  plan.keep_area_ = influence.keep_area;
-  plan.max_skin_influences_ = influence.max_skin_influences;
-  plan.tangents_ = influence.tangents;
-  Result<std::vector<std::vector<std::uint8_t>>> untouched = untouched_triangles(original, influence);
+  plan.prunes_ = constraints.vanishes();
+  plan.keep_area_ = constraints.keep_area;
+  plan.max_skin_influences_ = constraints.max_skin_influences;
+  plan.tangents_ = constraints.tangents;
+  Result<std::vector<std::vector<std::uint8_t>>> untouched = untouched_triangles(original, constraints);
   if (!untouched) return fail(untouched.error());
   plan.untouched_ = std::move(*untouched);
-  Model working;  // what the influences are about
+  Model working;  // what the constraints are about
   working.instances = original.instances;
-  Result<std::vector<Mesh>> meshes = working_meshes(original, plan.placings_, influence, plan.untouched_, task);
+  Result<std::vector<Mesh>> meshes = working_meshes(original, plan.placings_, constraints, plan.untouched_, task);
   if (!meshes) return fail(meshes.error());
   working.meshes = std::move(*meshes);
-  Result<std::vector<VertexInfluence>> influences =
-      vertex_influences(working.meshes.empty() ? original : working, influence);
-  if (!influences) return fail(influences.error());
+  Result<std::vector<VertexConstraints>> told =
+      vertex_constraints(working.meshes.empty() ? original : working, constraints);
+  if (!told) return fail(told.error());
   plan.working_ = std::move(working.meshes);
   plan.options_.resize(original.meshes.size());
   plan.logs_.resize(original.meshes.size());
@@ -74,7 +74,7 @@ Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t sma
     const std::size_t triangles = plan.mesh(m).triangles.size();
     if (plan.uses_[m] == 0 || triangles == 0) continue;
     const double share = static_cast<double>(triangles * plan.uses_[m]) / static_cast<double>(all);
-    const Result<void> planned = plan.plan_mesh(m, target, influence, std::move((*influences)[m]), task.part(share));
+    const Result<void> planned = plan.plan_mesh(m, target, constraints, std::move((*told)[m]), task.part(share));
     if (!planned) return fail(planned.error());
   }
   plan.merge();
@@ -82,32 +82,32 @@ Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t sma
   return plan;
 }
 
-Result<void> CollapsePlan::plan_mesh(std::size_t m, std::size_t target, const Influence& influence,
-                                     VertexInfluence told, const Task& task) {
+Result<void> CollapsePlan::plan_mesh(std::size_t m, std::size_t target, const SimplifyConstraints& constraints,
+                                     VertexConstraints told, const Task& task) {
   simplify::EdgeCollapseOptions& options = options_[m];
   options.target_triangles = target;
-  options.keep_border = influence.keep_border;
+  options.keep_border = constraints.keep_border;
   options.weights = std::move(told.weights);
-  options.locked = std::move(told.locked);
-  options.attribute_weights = influence.attribute_weights;
+  options.no_move = std::move(told.no_move);
+  options.attribute_weights = constraints.attribute_weights;
   options.metric = placings_[m];
   options.record_log = true;
   options.input = Input::valid;
   Result<simplify::EdgeCollapseResult> run =
-      simplify::collapse_edges(mesh(m), options, influence.vanishes() ? task.part(0.7) : task);
+      simplify::collapse_edges(mesh(m), options, constraints.vanishes() ? task.part(0.7) : task);
   if (!run) return fail(run.error());
   logs_[m] = std::move(*run->log);
   add(locked_, run->locked);
-  if (!influence.vanishes()) return {};
-  simplify::ThinPartsOptions thin;
-  thin.keep_area = influence.keep_area;
+  if (!constraints.vanishes()) return {};
+  simplify::PruneOptions thin;
+  thin.keep_area = constraints.keep_area;
   thin.weights = options.weights;
-  thin.locked = options.locked;
-  if (influence.keep_border) lock_borders(mesh(m), thin.locked, task);
+  thin.no_move = options.no_move;
+  if (constraints.keep_border) lock_borders(mesh(m), thin.no_move, task);
   thin.left_out = logs_[m].dropped;
   thin.metric = placings_[m];
   thin.input = Input::valid;
-  Result<simplify::ThinParts> parts = simplify::thin_parts(mesh(m), thin, task.part(0.3));
+  Result<simplify::PruneOrder> parts = simplify::prune_order(mesh(m), thin, task.part(0.3));
   if (!parts) return fail(parts.error());
   thin_[m] = std::move(*parts);
   return {};
@@ -121,13 +121,13 @@ void CollapsePlan::merge() {
   };
   std::vector<Entry> entries;
   std::size_t total = 0;
-  for (std::size_t m = 0; m < logs_.size(); ++m) total += logs_[m].collapses.size() + thin_[m].vanishings.size();
+  for (std::size_t m = 0; m < logs_.size(); ++m) total += logs_[m].collapses.size() + thin_[m].steps.size();
   entries.reserve(total);
   std::size_t lists = 0;
   for (std::uint32_t m = 0; m < logs_.size(); ++m) {
     for (const Collapse& c : logs_[m].collapses) entries.push_back({c.error, {m, false}});
-    for (const simplify::Vanishing& v : thin_[m].vanishings) entries.push_back({v.error, {m, true}});
-    lists += (logs_[m].collapses.empty() ? 0 : 1) + (thin_[m].vanishings.empty() ? 0 : 1);
+    for (const simplify::PruneStep& v : thin_[m].steps) entries.push_back({v.error, {m, true}});
+    lists += (logs_[m].collapses.empty() ? 0 : 1) + (thin_[m].steps.empty() ? 0 : 1);
   }
   if (lists > 1) {
     std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.error < b.error; });
@@ -145,7 +145,7 @@ void CollapsePlan::count_triangles() {
     if (!untouched_.empty()) {
       for (const std::uint32_t t : logs_[m].dropped) drawn += untouched_[m][t] != 0 ? uses_[m] : 0;
     }
-    if (thin_[m].vanishings.empty()) continue;
+    if (thin_[m].steps.empty()) continue;
     left[m].assign(thin_[m].parts.count, 0);
     std::size_t next = 0;
     const std::vector<std::uint32_t>& dropped = logs_[m].dropped;
@@ -164,7 +164,7 @@ void CollapsePlan::count_triangles() {
     const std::size_t m = step.mesh();
     std::uint32_t faces = 0;
     if (step.vanishes()) {
-      faces = std::exchange(left[m][thin_[m].vanishings[at[m].vanishings++].part], 0);
+      faces = std::exchange(left[m][thin_[m].steps[at[m].steps++].part], 0);
     } else {
       const Collapse& c = logs_[m].collapses[at[m].collapses++];
       faces = c.faces;
@@ -195,7 +195,7 @@ std::vector<CollapsePlan::Progress> CollapsePlan::progress_after(std::size_t cou
   std::vector<Progress> at(logs_.size());
   for (std::size_t i = 0; i < count; ++i) {
     Progress& p = at[steps_[i].mesh()];
-    ++(steps_[i].vanishes() ? p.vanishings : p.collapses);
+    ++(steps_[i].vanishes() ? p.steps : p.collapses);
   }
   return at;
 }
@@ -205,7 +205,7 @@ Result<Model> CollapsePlan::model_after(std::size_t count, Task task) const {
   double error = 0;  // the largest of the prefix: its last step's
   if (count > 0) {
     const Step last = steps_[count - 1];
-    error = last.vanishes() ? thin_[last.mesh()].vanishings[at[last.mesh()].vanishings - 1].error
+    error = last.vanishes() ? thin_[last.mesh()].steps[at[last.mesh()].steps - 1].error
                             : logs_[last.mesh()].collapses[at[last.mesh()].collapses - 1].error;
   }
   Model model;
@@ -229,15 +229,15 @@ Result<Model> CollapsePlan::model_after(std::size_t count, Task task) const {
 }
 
 Result<Mesh> CollapsePlan::mesh_after(std::size_t m, const Progress& progress, double error, const Task& task) const {
-  const simplify::ThinParts& thin = thin_[m];
+  const simplify::PruneOrder& thin = thin_[m];
   ReplayOptions options;
   options.input = Input::valid;
   if (!untouched_.empty()) options.untouched = untouched_[m];
   std::vector<double> area = thin.area;  // that each part stands for
-  if (progress.vanishings > 0) {
+  if (progress.steps > 0) {
     std::vector<std::uint8_t> gone(thin.parts.count, 0);
-    for (std::size_t i = 0; i < progress.vanishings; ++i) {
-      const simplify::Vanishing& v = thin.vanishings[i];
+    for (std::size_t i = 0; i < progress.steps; ++i) {
+      const simplify::PruneStep& v = thin.steps[i];
       gone[v.part] = 1;
       area[v.absorber] += area[v.part];
     }

@@ -11,29 +11,29 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
+#include "lodestone/chain/ladder/constraints.h"
 #include "lodestone/chain/ladder/effort.h"
-#include "lodestone/chain/ladder/influence.h"
 #include "lodestone/core/collapse_log.h"
 #include "lodestone/core/model.h"
 #include "lodestone/measure/distance.h"
 #include "lodestone/simplify/collapse/edge_collapse.h"
 #include "lodestone/simplify/fit/target.h"
-#include "lodestone/simplify/prune/thin_parts.h"
+#include "lodestone/simplify/prune/prune_order.h"
 
 namespace lodestone::chain::detail {
 
-/// What levels are shaped to, one a mesh, made when it is needed.
+/// What levels are improved to, one a mesh, made when it is needed.
 struct FitTargets {
   std::vector<std::unique_ptr<simplify::FitTarget>> targets;
-  std::vector<std::optional<measure::Reference>> references;  ///< of those that are shaped to a goal
+  std::vector<std::optional<measure::Reference>> references;  ///< of those that are improved to a goal
 };
 
 class CollapsePlan {
  public:
   /// Collapses every drawn mesh as far as `smallest` drawn triangles may need (1 = as far as it goes). `original` must
-  /// outlive the plan. Errors: empty, bad_argument (the influence does not fit the model), cancelled.
-  static Result<CollapsePlan> create(const Model& original, std::size_t smallest, const Influence& influence,
-                                     Task task);
+  /// outlive the plan. Errors: empty, bad_argument (the constraints does not fit the model), cancelled.
+  static Result<CollapsePlan> create(const Model& original, std::size_t smallest,
+                                     const SimplifyConstraints& constraints, Task task);
 
   /// Number of merged steps: collapses, and parts that vanish.
   std::size_t size() const { return steps_.size(); }
@@ -46,15 +46,16 @@ class CollapsePlan {
   /// The model after a prefix; documents, instances and materials shared with the original. O(model).
   Result<Model> model_after(std::size_t count, Task task) const;
 
-  /// As model_after(), with every mesh that allows it shaped by its own measured error (shape_level()): those that are
+  /// As model_after(), with every mesh that allows it improved by its own measured error (apply_feedback()): those that are
   /// drawn without being stretched, and of which no part vanishes and no triangle must stay. `targets` keeps what was
   /// prepared for the next call; of this plan, empty at first.
   /// `goal`: an error that is to hold, world space, with as few triangles as possible; 0 = as small as it gets with
   /// those of the prefix.
-  Result<Model> shaped_after(std::size_t count, Effort effort, double goal, FitTargets& targets, Task task) const;
+  Result<Model> model_with_feedback(std::size_t count, Effort effort, double goal, FitTargets& targets,
+                                    Task task) const;
 
   /// Whether any mesh allows it. O(triangles).
-  bool can_be_shaped() const;
+  bool can_take_feedback() const;
 
   /// Whether parts may vanish.
   bool prunes() const { return prunes_; }
@@ -75,21 +76,21 @@ class CollapsePlan {
   };
   // How far the steps of one mesh have come.
   struct Progress {
-    std::size_t collapses = 0, vanishings = 0;
+    std::size_t collapses = 0, steps = 0;
   };
 
   const Mesh& mesh(std::size_t m) const { return working_.empty() ? original_->meshes[m] : working_[m]; }
-  Result<void> plan_mesh(std::size_t m, std::size_t target, const Influence& influence, VertexInfluence told,
-                         const Task& task);
+  Result<void> plan_mesh(std::size_t m, std::size_t target, const SimplifyConstraints& constraints,
+                         VertexConstraints told, const Task& task);
   void merge();
   void count_triangles();
   std::size_t drawn_parts() const;
   std::vector<Progress> progress_after(std::size_t count) const;
   Result<Mesh> mesh_after(std::size_t m, const Progress& progress, double error, const Task& task) const;
   void finish(Mesh& mesh) const;
-  bool can_be_shaped(std::size_t m) const;
-  Result<Mesh> shaped(std::size_t m, Mesh plain, Effort effort, double goal, FitTargets& targets,
-                      const Task& task) const;
+  bool can_take_feedback(std::size_t m) const;
+  Result<Mesh> mesh_with_feedback(std::size_t m, Mesh plain, Effort effort, double goal, FitTargets& targets,
+                                  const Task& task) const;
 
   const Model* original_ = nullptr;
   std::vector<Mesh> working_;        // the meshes that the logs are about, where they are not the original's
@@ -97,7 +98,7 @@ class CollapsePlan {
   std::vector<std::uint32_t> uses_;  // how often each mesh is drawn
   std::vector<simplify::EdgeCollapseOptions> options_;  // one a mesh, of the run that made its log
   std::vector<CollapseLog> logs_;                       // one a mesh; empty for a mesh that is not drawn
-  std::vector<simplify::ThinParts> thin_;               // one a mesh; empty unless parts may vanish
+  std::vector<simplify::PruneOrder> thin_;              // one a mesh; empty unless parts may vanish
   std::vector<std::vector<std::uint8_t>> untouched_;    // triangles of each mesh that must not change; empty = none
   std::vector<Step> steps_;
   std::vector<std::size_t> drawn_after_;  // size() + 1 entries, never rising

@@ -8,20 +8,20 @@
 
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/units.h"
-#include "lodestone/chain/ladder/equalize_detail.h"
 #include "lodestone/chain/ladder/feedback_detail.h"
+#include "lodestone/chain/ladder/redistribute_detail.h"
 #include "lodestone/core/adjacency.h"
 #include "lodestone/core/model.h"
-#include "lodestone/simplify/fit/fit.h"
+#include "lodestone/simplify/fit/tracked_level.h"
 #include "lodestone/spatial/closest_batch.h"
-#include "lodestone/spatial/crossings.h"
+#include "lodestone/spatial/self_intersections.h"
 
 namespace lodestone::chain::detail {
 
 namespace {
 
 using simplify::EdgeCollapseOptions;
-using simplify::FittedLevel;
+using simplify::TrackedLevel;
 
 // Weighted rounds: triangles above this share of the maximum are made finer,
 constexpr double kBad = 0.7;
@@ -31,13 +31,13 @@ constexpr double kMeanSlack = 1.01;  // the mean may rise by a hundredth for a s
 constexpr float kBorder = 3;         // weight of borders, so that they pay little for what gains weight elsewhere
 constexpr int kWeightedRounds = 2;
 
-// Equalizing rounds: how many at most, and how many without a smaller maximum end them.
+// Redistributing rounds: how many at most, and how many without a smaller maximum end them.
 constexpr int kRounds = 14;
 constexpr int kIdleRounds = 4;
 // Fewer triangles within a goal: so many at first, until a smaller step fails, too.
 constexpr double kShrink = 0.9, kLeastShrink = 0.98;
-constexpr int kRetries = 4;        // with places kept where collapses led beyond the goal,
-constexpr int kRoundsForGoal = 8;  // and of equalizing what is left
+constexpr int kRetries = 4;        // with vertices kept where collapses led beyond the goal,
+constexpr int kRoundsForGoal = 8;  // and of redistributing what is left
 constexpr double kCertify = 0.99;  // of the goal, as bounds are a hundredth above what they bound
 constexpr std::uint64_t kCertifySamples = 1000, kCertifyQueries = 1'000'000;
 constexpr double kVolumeMax = 1.02, kVolumeMean = 1.005;  // how far errors may rise to meet the volume
@@ -47,12 +47,12 @@ constexpr int kFitAttempts = 3;
 
 // For each vertex of a mesh, the largest distance found at the triangle of a level that is closest to it; 0 where none
 // is or the task is cancelled.
-std::vector<double> worst_near(const Mesh& mesh, const FittedLevel& level, const Task& task) {
+std::vector<double> error_at_vertices(const Mesh& mesh, const TrackedLevel& level, const Task& task) {
   std::vector<double> worst(mesh.vertex_count(), 0.0);
   const spatial::Surface surface = simplify::surface_of(level.mesh(), task);
   if (task.cancelled() || surface.triangles.empty()) return worst;
   const spatial::Bvh tree(surface, task);
-  const std::vector<FittedLevel::Worst> all = level.worst();
+  const std::vector<simplify::TriangleError> all = level.worst();
   parallel_for(worst.size(), 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<Vec3d> points;
     for (std::size_t v = begin; v < end; ++v) points.push_back(mesh.position(static_cast<std::uint32_t>(v)));
@@ -64,8 +64,8 @@ std::vector<double> worst_near(const Mesh& mesh, const FittedLevel& level, const
 }
 
 // Raises the weights of the start's vertices where the level is worst.
-void raise_weights(const Mesh& start, const FittedLevel& level, std::vector<float>& weights, const Task& task) {
-  const std::vector<double> worst = worst_near(start, level, task);
+void raise_weights(const Mesh& start, const TrackedLevel& level, std::vector<float>& weights, const Task& task) {
+  const std::vector<double> worst = error_at_vertices(start, level, task);
   const double limit = kBad * level.max();
   for (std::size_t v = 0; v < worst.size(); ++v) {
     if (!(worst[v] > limit)) continue;
@@ -77,30 +77,30 @@ void raise_weights(const Mesh& start, const FittedLevel& level, std::vector<floa
 }
 
 // The start collapsed again, vertices where the level is worst weighing more; the smallest maximum.
-Result<FittedLevel> weighted(const ShapeSource& source, FittedLevel best, Effort effort, const Task& task) {
+Result<TrackedLevel> weighted(const FeedbackSource& source, TrackedLevel best, Effort effort, const Task& task) {
   EdgeCollapseOptions options = source.options;
   options.target_triangles = best.mesh().triangles.size();
   options.record_log = false;
   options.weights.resize(source.start.vertex_count(), 1.0F);
-  options.locked = at_places(source.start, source.locked_places);
-  FittedLevel current = best;
+  options.no_move = at_positions(source.start, source.no_move_positions);
+  TrackedLevel current = best;
   const double start_mean = best.mean();
-  FittedLevel::Faults most_faults = best.faults(task);
+  TrackedLevel::Faults most_faults = best.faults(task);
   bool knows_original = false;
   for (int round = 0; round < kWeightedRounds && !task.cancelled(); ++round) {
     raise_weights(source.start, current, options.weights, task);
-    hold_borders(source.start, kBorder, options.weights, task);
+    weight_borders(source.start, kBorder, options.weights, task);
     Result<simplify::EdgeCollapseResult> made = simplify::collapse_edges(source.start, options, task.part(0.3));
     if (!made) return fail(made.error());
     if (made->mesh.triangles.empty() || task.cancelled()) break;
-    current = FittedLevel(source.target, std::move(made->mesh), task);
+    current = TrackedLevel(source.target, std::move(made->mesh), task);
     if (!(current.max() < best.max()) || current.mean() > kMeanSlack * start_mean) continue;
     // Collapses leave some of the faults that an original has: these may be others, but for what is to be fitted.
-    const FittedLevel::Faults faults = current.faults(task);
+    const TrackedLevel::Faults faults = current.faults(task);
     if (!faults.no_more_than(most_faults) && effort == Effort::normal && !knows_original) {
       const spatial::Surface& original = source.target.surface();
-      most_faults.crossings =
-          std::max(most_faults.crossings, spatial::crossings(source.target.tree(), {}, task).size());
+      most_faults.intersections =
+          std::max(most_faults.intersections, spatial::self_intersections(source.target.tree(), {}, task).size());
       most_faults.folds = std::max(most_faults.folds, spatial::folds(original).size());
       knows_original = true;
     }
@@ -114,41 +114,41 @@ bool has_borders(const Mesh& mesh, const Task& task) {
   return std::any_of(edges.edges.begin(), edges.edges.end(), [](const Edge& e) { return e.count != 2; });
 }
 
-// Adds the places of marked vertices.
-void keep_where(const Mesh& mesh, const std::vector<std::uint8_t>& marked, std::vector<Vec3f>& keep) {
+// Adds the positions of marked vertices.
+void add_positions(const Mesh& mesh, const std::vector<std::uint8_t>& marked, std::vector<Vec3f>& list) {
   for (std::size_t v = 0; v < marked.size(); ++v) {
-    if (marked[v] != 0) keep.push_back(mesh.positions[v]);
+    if (marked[v] != 0) list.push_back(mesh.positions[v]);
   }
-  std::sort(keep.begin(), keep.end(), before);
-  keep.erase(std::unique(keep.begin(), keep.end()), keep.end());
+  std::sort(list.begin(), list.end(), before);
+  list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-// Adds the places of those vertices of a level where a coarser one is beyond a limit.
-void keep_where_bad(const FittedLevel& level, const FittedLevel& coarser, double limit, std::vector<Vec3f>& keep,
-                    const Task& task) {
-  const std::vector<double> worst = worst_near(level.mesh(), coarser, task);
+// Adds the positions of those vertices of a level where a coarser one is beyond a limit.
+void add_positions_beyond(const TrackedLevel& level, const TrackedLevel& coarser, double limit,
+                          std::vector<Vec3f>& list, const Task& task) {
+  const std::vector<double> worst = error_at_vertices(level.mesh(), coarser, task);
   std::vector<std::uint8_t> bad(worst.size());
   for (std::size_t v = 0; v < worst.size(); ++v) bad[v] = worst[v] > limit ? 1 : 0;
-  keep_where(level.mesh(), bad, keep);
+  add_positions(level.mesh(), bad, list);
 }
 
-// Rounds of equalizing, the smallest maximum; the mean stays below `most_mean`, and no faults are added.
-Result<FittedLevel> equalized(const ShapeSource& source, FittedLevel best, double most_mean,
-                              const FittedLevel::Faults& most_faults, const Task& task) {
+// Rounds of redistributing, the smallest maximum; the mean stays below `most_mean`, and no faults are added.
+Result<TrackedLevel> redistribute_rounds(const FeedbackSource& source, TrackedLevel best, double most_mean,
+                                         const TrackedLevel::Faults& most_faults, const Task& task) {
   const std::size_t triangles = best.mesh().triangles.size();
-  EqualizeOptions options;
+  RedistributeOptions options;
   options.most_triangles = triangles;
-  FittedLevel current = best;
+  TrackedLevel current = best;
   for (int round = 0, idle = 0; round < kRounds && idle < kIdleRounds && !task.cancelled(); ++round) {
     const Task part =
         task.part(1.0 / kRounds, fmt::format("round {}, maximum {}", round + 1, short_number(best.max())));
-    Result<FittedLevel> next = equalize(source, current, options, part);
+    Result<TrackedLevel> next = redistribute_triangles(source, current, options, part);
     if (!next) return fail(next.error());
     if (next->mesh().triangles.empty() || next->mean() > most_mean || next->mesh().triangles.size() > triangles) break;
     ++idle;
-    const FittedLevel::Faults faults = next->faults(task);
+    const TrackedLevel::Faults faults = next->faults(task);
     if (!faults.no_more_than(most_faults)) {
-      keep_where(next->mesh(), faults.vertices, options.stay);  // and again from where it was
+      add_positions(next->mesh(), faults.vertices, options.no_move);  // and again from where it was
       continue;
     }
     current = std::move(*next);
@@ -160,7 +160,7 @@ Result<FittedLevel> equalized(const ShapeSource& source, FittedLevel best, doubl
 }
 
 // Whether a level is certified to be within the goal; places where it is not are told to it.
-Result<bool> holds_goal(const ShapeSource& source, FittedLevel& level, const Task& task) {
+Result<bool> holds_goal(const FeedbackSource& source, TrackedLevel& level, const Task& task) {
   measure::DistanceOptions options;
   options.samples = kCertifySamples;
   options.queries = kCertifyQueries;
@@ -169,20 +169,20 @@ Result<bool> holds_goal(const ShapeSource& source, FittedLevel& level, const Tas
   if (!d) return fail(d.error());
   const double most = kCertify * source.goal;
   if (d->bound <= most) return true;
-  if (d->forward.bound > most) level.look_at(d->forward.max_at, true, task);
-  if (d->backward.bound > most) level.look_at(d->backward.max_at, false, task);
+  if (d->forward.bound > most) level.probe_error(d->forward.max_at, true, task);
+  if (d->backward.bound > most) level.probe_error(d->backward.max_at, false, task);
   return false;
 }
 
 // A level of at most so many triangles that is certified to be within the goal; nothing where none was found. Collapses
-// that lead beyond it are not tried again: `keep` of the options grows. What is left then is split and collapsed
+// that lead beyond it are not tried again: `no_collapse` of the options grows. What is left then is split and collapsed
 // elsewhere.
-Result<std::optional<FittedLevel>> within_goal(const ShapeSource& source, const FittedLevel& start,
-                                               const FittedLevel::Faults& most_faults, EqualizeOptions& options,
-                                               const Task& task) {
+Result<std::optional<TrackedLevel>> within_goal(const FeedbackSource& source, const TrackedLevel& start,
+                                                const TrackedLevel::Faults& most_faults, RedistributeOptions& options,
+                                                const Task& task) {
   const double most = kCertify * source.goal;
   bool found = false;
-  Result<FittedLevel> level = equalize(source, start, options, task);
+  Result<TrackedLevel> level = redistribute_triangles(source, start, options, task);
   const auto look = [&]() -> Result<void> {
     if (!level) return fail(level.error());
     found = !level->mesh().triangles.empty() && level->mesh().triangles.size() <= options.most_triangles;
@@ -195,14 +195,14 @@ Result<std::optional<FittedLevel>> within_goal(const ShapeSource& source, const 
   };
   Result<void> looked = look();
   for (int retry = 0; looked && !found && retry < kRetries && !task.cancelled(); ++retry) {
-    const std::size_t known = options.keep.size();
-    keep_where_bad(start, *level, most, options.keep, task);
-    if (options.keep.size() == known) break;
-    level = equalize(source, start, options, task);
+    const std::size_t known = options.no_collapse.size();
+    add_positions_beyond(start, *level, most, options.no_collapse, task);
+    if (options.no_collapse.size() == known) break;
+    level = redistribute_triangles(source, start, options, task);
     looked = look();
   }
   for (int round = 0; looked && !found && options.fits && round < kRoundsForGoal && !task.cancelled(); ++round) {
-    level = equalize(source, *level, options, task);
+    level = redistribute_triangles(source, *level, options, task);
     looked = look();
   }
   if (!looked) return fail(looked.error());
@@ -211,22 +211,22 @@ Result<std::optional<FittedLevel>> within_goal(const ShapeSource& source, const 
 }
 
 // Fewer and fewer triangles within the goal; nothing where the level can't be brought there as it is.
-Result<std::optional<FittedLevel>> fewest_within_goal(const ShapeSource& source, const FittedLevel& start, bool fits,
-                                                      const Task& task) {
-  const FittedLevel::Faults most_faults = start.faults(task);
-  EqualizeOptions options;
+Result<std::optional<TrackedLevel>> fewest_within_goal(const FeedbackSource& source, const TrackedLevel& start,
+                                                       bool fits, const Task& task) {
+  const TrackedLevel::Faults most_faults = start.faults(task);
+  RedistributeOptions options;
   options.fits = fits;
   options.keeps_borders = false;
-  std::optional<FittedLevel> best;
+  std::optional<TrackedLevel> best;
   double shrink = 1;  // as it is at first
   while (shrink < kLeastShrink || !best) {
     if (task.cancelled()) break;
-    const FittedLevel& level = best ? *best : start;
+    const TrackedLevel& level = best ? *best : start;
     const std::size_t now = level.mesh().triangles.size();
     const Task part = task.part(0.05, fmt::format("{} triangles", with_separators(now)));
     options.most_triangles = static_cast<std::size_t>(shrink * static_cast<double>(now));
     if (options.most_triangles == 0) break;
-    Result<std::optional<FittedLevel>> next = within_goal(source, level, most_faults, options, part);
+    Result<std::optional<TrackedLevel>> next = within_goal(source, level, most_faults, options, part);
     if (!next) return fail(next.error());
     if (*next) {
       if (!best) shrink = kShrink;
@@ -240,84 +240,85 @@ Result<std::optional<FittedLevel>> fewest_within_goal(const ShapeSource& source,
 }
 
 // The volume is met again, if that costs next to nothing.
-void meet_volume(FittedLevel& level, const std::vector<std::uint8_t>& locked, const FittedLevel::Faults& most,
+void meet_volume(TrackedLevel& level, const std::vector<std::uint8_t>& no_move, const TrackedLevel::Faults& most,
                  const Task& task) {
-  FittedLevel met = level;
+  TrackedLevel met = level;
   simplify::FitOptions fit;
   fit.solves = 0;
   fit.volume = true;
-  fit.locked = locked;
+  fit.no_move = no_move;
   met.fit(fit, task);
   const bool is_near = met.max() <= kVolumeMax * level.max() && met.mean() <= kVolumeMean * level.mean();
   if (is_near && met.faults(task).no_more_than(most)) level = std::move(met);
 }
 
 // Fits without adding faults: where some come up, the vertices there stay, and all is fitted again.
-void fit_without_faults(FittedLevel& level, simplify::FitOptions options, const FittedLevel::Faults& most,
+void fit_without_faults(TrackedLevel& level, simplify::FitOptions options, const TrackedLevel::Faults& most,
                         const Task& task) {
   for (int attempt = 0; attempt < kFitAttempts && !task.cancelled(); ++attempt) {
-    FittedLevel next = level;
+    TrackedLevel next = level;
     next.fit(options, task);
-    const FittedLevel::Faults faults = next.faults(task);
+    const TrackedLevel::Faults faults = next.faults(task);
     if (faults.no_more_than(most)) {
       level = std::move(next);
       return;
     }
-    options.locked.resize(level.mesh().vertex_count(), 0);
-    for (std::size_t v = 0; v < options.locked.size(); ++v) {
-      if (faults.vertices[v] != 0) options.locked[v] = 1;
+    options.no_move.resize(level.mesh().vertex_count(), 0);
+    for (std::size_t v = 0; v < options.no_move.size(); ++v) {
+      if (faults.vertices[v] != 0) options.no_move[v] = 1;
     }
   }
 }
 
-Result<FittedLevel> shaped_best(const ShapeSource& source, FittedLevel level, const Task& task) {
+Result<TrackedLevel> fitted(const FeedbackSource& source, TrackedLevel level, const Task& task) {
   const double plain_mean = level.mean();
-  const FittedLevel::Faults plain_faults = level.faults(task);
+  const TrackedLevel::Faults plain_faults = level.faults(task);
   // Fitting holds borders and what is not manifold; where these are worst, only collapsing otherwise helps.
   if (has_borders(level.mesh(), task)) {
-    Result<FittedLevel> start = weighted(source, std::move(level), Effort::best, task);
+    Result<TrackedLevel> start = weighted(source, std::move(level), Effort::best, task);
     if (!start) return start;
     level = std::move(*start);
   }
   simplify::FitOptions fit;
   fit.solves = kSolves;
-  if (!source.locked_places.empty()) fit.locked = at_places(level.mesh(), source.locked_places);
+  if (!source.no_move_positions.empty()) fit.no_move = at_positions(level.mesh(), source.no_move_positions);
   fit_without_faults(level, fit, plain_faults, task);
   task.advance(0.4);
   if (task.cancelled() || source.goal > 0) return level;
   // With weights, triangles are not shifted away from where they are wanted.
   if (source.options.weights.empty()) {
     const double most_mean = std::min(kRoundsMean * level.mean(), plain_mean);
-    Result<FittedLevel> evened = equalized(source, std::move(level), most_mean, plain_faults, task.part(0.6));
-    if (!evened) return evened;
-    level = std::move(*evened);
+    Result<TrackedLevel> redistributed =
+        redistribute_rounds(source, std::move(level), most_mean, plain_faults, task.part(0.6));
+    if (!redistributed) return redistributed;
+    level = std::move(*redistributed);
   }
-  if (!source.locked_places.empty()) fit.locked = at_places(level.mesh(), source.locked_places);
-  meet_volume(level, fit.locked, plain_faults, task);
+  if (!source.no_move_positions.empty()) fit.no_move = at_positions(level.mesh(), source.no_move_positions);
+  meet_volume(level, fit.no_move, plain_faults, task);
   return level;
 }
 
 }  // namespace
 
-Result<Mesh> shape_level(const ShapeSource& source, Mesh plain, Effort effort, const Task& task) {
+Result<Mesh> apply_feedback(const FeedbackSource& source, Mesh plain, Effort effort, const Task& task) {
   if (effort == Effort::fast || plain.triangles.empty()) return plain;
   const bool fits = effort == Effort::best, has_goal = source.goal > 0;
   // With weights, triangles are not shifted away from where they are wanted.
   if (has_goal && !source.options.weights.empty()) return plain;
-  const FittedLevel level(source.target, std::move(plain), task);
-  Result<FittedLevel> shaped = fits ? shaped_best(source, level, task) : weighted(source, level, effort, task);
+  const TrackedLevel level(source.target, std::move(plain), task);
+  Result<TrackedLevel> improved = fits ? fitted(source, level, task) : weighted(source, level, effort, task);
   if (task.cancelled()) return cancelled_error("shaping");
-  if (!shaped) return fail(shaped.error());
-  if (!has_goal) return shaped->mesh();
+  if (!improved) return fail(improved.error());
+  if (!has_goal) return improved->mesh();
   // What fitting spoils is not gone into: from the plain level then, and at last as without fitting.
   struct Way {
-    const FittedLevel* start;
+    const TrackedLevel* start;
     bool fits;
   };
-  std::vector<Way> ways{{&*shaped, fits}, {&level, false}};
+  std::vector<Way> ways{{&*improved, fits}, {&level, false}};
   if (fits) ways.insert(ways.begin() + 1, {&level, true});
   for (const Way& way : ways) {
-    Result<std::optional<FittedLevel>> fewest = fewest_within_goal(source, *way.start, way.fits, task);
+    Result<std::optional<TrackedLevel>> fewest = fewest_within_goal(source, *way.start, way.fits, task);
     if (task.cancelled()) return cancelled_error("shaping");
     if (!fewest) return fail(fewest.error());
     if (*fewest) return (*fewest)->mesh();

@@ -1,4 +1,4 @@
-// Levels shaped by their own measured error: collapsed again with weights where they are worst, then fitted.
+// Levels improved by their own measured error: collapsed again with weights where they are worst, then fitted.
 #pragma once
 
 #include <array>
@@ -18,14 +18,14 @@ namespace lodestone::chain::detail {
 inline bool before(const Vec3f& a, const Vec3f& b) { return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z}; }
 
 /// What a level of one mesh is made from.
-struct ShapeSource {
+struct FeedbackSource {
   const Mesh& start;                             ///< what is collapsed: the original, or a finer level of it
   const simplify::FitTarget& target;             ///< the original
   const simplify::EdgeCollapseOptions& options;  ///< of the plain run, as they are for `start`; its target is not used
   /// A maximum that is enough, mesh units, for as few triangles as it takes; 0 = as small as it gets.
   double goal = 0;
   const measure::Reference* reference = nullptr;  ///< the original, mesh units; needed with a goal
-  std::vector<Vec3f> locked_places;               ///< of vertices that stay, sorted as before() does
+  std::vector<Vec3f> no_move_positions;           ///< of vertices that stay, sorted as before() does
 };
 
 /// A mesh of at most as many triangles as `level`, which the plain run made, and nearer to the original as a rule:
@@ -33,6 +33,6 @@ struct ShapeSource {
 /// weighing more; twice, the smallest maximum kept. With best, vertices are moved and edges turned to where distances
 /// are least; then triangles are added where the level is worst and taken away where they are missed least, in rounds,
 /// the smallest maximum kept. Errors: those of collapse_edges(), cancelled.
-Result<Mesh> shape_level(const ShapeSource& source, Mesh level, Effort effort, const Task& task);
+Result<Mesh> apply_feedback(const FeedbackSource& source, Mesh level, Effort effort, const Task& task);
 
 }  // namespace lodestone::chain::detail

@@ -36,10 +36,10 @@ LevelMaker::LevelMaker(const CollapsePlan& plan, const Reference& reference, con
     : plan_(plan),
       reference_(reference),
       distance_(of_valid(distance)),
-      effort_(plan.can_be_shaped() ? effort : Effort::fast) {}
+      effort_(plan.can_take_feedback() ? effort : Effort::fast) {}
 
-Result<Cut> LevelMaker::plain(std::size_t prefix, const Task& task) const {
-  Cut cut;
+Result<MeasuredLevel> LevelMaker::plain(std::size_t prefix, const Task& task) const {
+  MeasuredLevel cut;
   const Stopwatch making;
   Result<Model> model = plan_.model_after(prefix, task.part(0.3));
   if (!model) return fail(model.error());
@@ -47,16 +47,16 @@ Result<Cut> LevelMaker::plain(std::size_t prefix, const Task& task) const {
   return measured(std::move(cut), prefix, std::move(*model), Effort::fast, task.part(0.7));
 }
 
-Result<Cut> LevelMaker::shaped(std::size_t prefix, const Task& task, double goal) {
-  Result<Cut> cut = plain(prefix, task.part(effort_ == Effort::fast ? 1.0 : 0.2));
+Result<MeasuredLevel> LevelMaker::with_feedback(std::size_t prefix, const Task& task, double goal) {
+  Result<MeasuredLevel> cut = plain(prefix, task.part(effort_ == Effort::fast ? 1.0 : 0.2));
   if (!cut || effort_ == Effort::fast || prefix == 0) return cut;
-  Cut shaping;
+  MeasuredLevel improved;
   const Stopwatch making;
-  Result<Model> model = plan_.shaped_after(prefix, effort_, goal, targets_, task.part(0.6, "shaping"));
+  Result<Model> model = plan_.model_with_feedback(prefix, effort_, goal, targets_, task.part(0.6, "shaping"));
   if (!model) return fail(model.error());
-  shaping.simplify_seconds = cut->simplify_seconds + making.total();
-  shaping.measure_seconds = cut->measure_seconds;
-  Result<Cut> made = measured(std::move(shaping), prefix, std::move(*model), effort_, task.part(0.2));
+  improved.simplify_seconds = cut->simplify_seconds + making.total();
+  improved.measure_seconds = cut->measure_seconds;
+  Result<MeasuredLevel> made = measured(std::move(improved), prefix, std::move(*model), effort_, task.part(0.2));
   if (!made) return made;
   if (is_better(*made, *cut, goal)) return made;
   cut->simplify_seconds = made->simplify_seconds;
@@ -65,7 +65,7 @@ Result<Cut> LevelMaker::shaped(std::size_t prefix, const Task& task, double goal
   return cut;
 }
 
-bool LevelMaker::is_better(const Cut& made, const Cut& plain, double goal) const {
+bool LevelMaker::is_better(const MeasuredLevel& made, const MeasuredLevel& plain, double goal) const {
   constexpr double kMeanSlack = 1.01;
   const LevelError &now = made.level.error, &then = plain.level.error;
   if (made.level.triangles > plain.level.triangles) return false;
@@ -75,7 +75,8 @@ bool LevelMaker::is_better(const Cut& made, const Cut& plain, double goal) const
   return no_worse && (now.measured_error < then.measured_error || now.mean_error < then.mean_error);
 }
 
-Result<Cut> LevelMaker::measured(Cut cut, std::size_t prefix, Model model, Effort effort, const Task& task) const {
+Result<MeasuredLevel> LevelMaker::measured(MeasuredLevel cut, std::size_t prefix, Model model, Effort effort,
+                                           const Task& task) const {
   const Stopwatch measuring;
   const Result<measure::Distance> d = measure_steadily(reference_, model, distance_, task);
   if (!d) return fail(d.error());

@@ -17,7 +17,7 @@
 namespace lodestone::chain::detail {
 
 /// A prefix of the plan, made and measured.
-struct Cut {
+struct MeasuredLevel {
   std::size_t prefix = 0;
   Level level;
   double simplify_seconds = 0, measure_seconds = 0;
@@ -33,15 +33,16 @@ class LevelMaker {
   Effort effort() const { return effort_; }
 
   /// The level that edge collapse alone makes. Errors: cancelled.
-  Result<Cut> plain(std::size_t prefix, const Task& task) const;
+  Result<MeasuredLevel> plain(std::size_t prefix, const Task& task) const;
 
-  /// The same shaped by its error, if that is better; else the plain one. With a goal fewer triangles within it are
+  /// The same improved by its error, if that is better; else the plain one. With a goal fewer triangles within it are
   /// better. Errors: cancelled.
-  Result<Cut> shaped(std::size_t prefix, const Task& task, double goal = 0);
+  Result<MeasuredLevel> with_feedback(std::size_t prefix, const Task& task, double goal = 0);
 
  private:
-  bool is_better(const Cut& made, const Cut& plain, double goal) const;
-  Result<Cut> measured(Cut cut, std::size_t prefix, Model model, Effort effort, const Task& task) const;
+  bool is_better(const MeasuredLevel& made, const MeasuredLevel& plain, double goal) const;
+  Result<MeasuredLevel> measured(MeasuredLevel cut, std::size_t prefix, Model model, Effort effort,
+                                 const Task& task) const;
 
   const CollapsePlan& plan_;
   const measure::Reference& reference_;
@@ -52,26 +53,27 @@ class LevelMaker {
 
 /// Where searches for errors have come to: the next, larger error needs nothing finer.
 struct Starts {
-  std::size_t plain = 0;   ///< the coarsest plain prefix within the last error
-  std::size_t shaped = 0;  ///< the prefix of the last level
+  std::size_t plain = 0;          ///< the coarsest plain prefix within the last error
+  std::size_t with_feedback = 0;  ///< the prefix of the last level
 };
 
 /// The coarsest prefix found whose measured maximum is within `limit`, not finer than the last level: plain levels
-/// first, within one per cent; then one shaped from there on. Nothing within the limit: the plain cut where the last
+/// first, within one per cent; then one improved from there on. Nothing within the limit: the plain cut where the last
 /// level was. Errors: cancelled.
-Result<Cut> find_error_cut(LevelMaker& maker, Starts& starts, double limit, const Task& task);
+Result<MeasuredLevel> find_error_cut(LevelMaker& maker, Starts& starts, double limit, const Task& task);
 
 /// What becomes of a level whose error may jump.
 struct InLine {
-  std::optional<Cut> cut;  ///< the coarsest that is in line; none where nothing coarser than the finer level is
-  bool jumps = false;      ///< it is another than the one that was asked
+  std::optional<MeasuredLevel>
+      cut;             ///< the coarsest that is in line; none where nothing coarser than the finer level is
+  bool jumps = false;  ///< it is another than the one that was asked
 };
 
 /// `cut` itself where its error is in line with those of the finer levels (most_in_line()); else the coarsest between
 /// prefix `last`, which the level before was cut at, and it that is, by bisection. Where no finer level tells what to
 /// expect, one is made on the way; errors below a two-hundredth of the diagonal, and first levels that lose parts, are
 /// then taken as they are. Errors: cancelled.
-Result<InLine> keep_in_line(LevelMaker& maker, Cut cut, const std::vector<CurvePoint>& finer, std::size_t last,
-                            const Task& task);
+Result<InLine> keep_in_line(LevelMaker& maker, MeasuredLevel cut, const std::vector<CurvePoint>& finer,
+                            std::size_t last, const Task& task);
 
 }  // namespace lodestone::chain::detail

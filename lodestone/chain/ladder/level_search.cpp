@@ -15,25 +15,25 @@ namespace {
 struct Search {
   std::size_t good, bad;
   double nearness;
-  std::optional<Cut> best;
+  std::optional<MeasuredLevel> best;
   double simplify_seconds = 0, measure_seconds = 0;
 
   // The cut becomes the best, whatever its error.
-  Result<void> take(Result<Cut> cut) {
+  Result<void> take(Result<MeasuredLevel> cut) {
     if (!cut) return fail(cut.error());
     count(*cut);
     best = std::move(*cut);
     return {};
   }
 
-  void count(const Cut& cut) {
+  void count(const MeasuredLevel& cut) {
     simplify_seconds += cut.simplify_seconds;
     measure_seconds += cut.measure_seconds;
   }
 
   // The best with the time of all that was tried.
-  Cut finish() {
-    Cut cut = std::move(*best);
+  MeasuredLevel finish() {
+    MeasuredLevel cut = std::move(*best);
     cut.simplify_seconds = simplify_seconds;
     cut.measure_seconds = measure_seconds;
     cut.level.seconds = simplify_seconds + measure_seconds;
@@ -52,7 +52,7 @@ struct Search {
   template <class Within>
   Result<void> run(const LevelMaker& maker, std::size_t first, Within&& within, const Task& task) {
     for (std::size_t prefix = first != 0 ? first : next(maker.plan()); prefix != 0; prefix = next(maker.plan())) {
-      Result<Cut> cut = maker.plain(prefix, task.part(0.1));
+      Result<MeasuredLevel> cut = maker.plain(prefix, task.part(0.1));
       if (!cut) return fail(cut.error());
       if (within(*cut)) {
         good = prefix;
@@ -69,7 +69,7 @@ struct Search {
 // Shapes a level to as few triangles as `limit` allows, fewer than the last level has (`last`, its prefix). Fitting
 // brings one that is somewhat coarser than the plain one within the limit, and collapses that were not limited one by
 // one make better triangles: that start first.
-Result<void> shape_fewest(LevelMaker& maker, Search& search, std::size_t last, double limit, const Task& task) {
+Result<void> fewest_with_feedback(LevelMaker& maker, Search& search, std::size_t last, double limit, const Task& task) {
   constexpr double kCoarserStart = 0.8;
   const CollapsePlan& plan = maker.plan();
   const std::size_t plain = search.good;
@@ -77,7 +77,7 @@ Result<void> shape_fewest(LevelMaker& maker, Search& search, std::size_t last, d
   std::vector<std::size_t> starts{std::max(plain, plan.prefix_for(fewer)), plain, std::max(plain, last)};
   starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
   for (const std::size_t start : starts) {
-    Result<Cut> cut = maker.shaped(start, task.part(0.3), limit);
+    Result<MeasuredLevel> cut = maker.with_feedback(start, task.part(0.3), limit);
     if (!cut) return fail(cut.error());
     // One that has fewer triangles than the plan's end is not the end.
     const std::size_t reached = std::min(plan.prefix_for(cut->level.triangles), plan.size() - 1);
@@ -93,22 +93,23 @@ Result<void> shape_fewest(LevelMaker& maker, Search& search, std::size_t last, d
 
 }  // namespace
 
-Result<Cut> find_error_cut(LevelMaker& maker, Starts& starts, double limit, const Task& task) {
+Result<MeasuredLevel> find_error_cut(LevelMaker& maker, Starts& starts, double limit, const Task& task) {
   constexpr double kNear = 0.01;
   const CollapsePlan& plan = maker.plan();
   const bool shapes = maker.effort() != Effort::fast;
   const Task probes = task.part(shapes ? 0.3 : 0.9, "searching");
   Search search{starts.plain, plan.size() + 1, kNear, {}};
-  const auto within = [&](const Cut& cut) { return cut.level.error.measured_error <= limit; };
+  const auto within = [&](const MeasuredLevel& cut) { return cut.level.error.measured_error <= limit; };
   const Result<void> found = search.run(maker, plan.size(), within, probes);
   if (!found) return fail(found.error());
   starts.plain = search.good;
   if (shapes && search.good < plan.size()) {
     const Task shaping = task.part(0.7, "shaping");
-    if (const Result<void> ok = shape_fewest(maker, search, starts.shaped, limit, shaping); !ok)
+    if (const Result<void> ok = fewest_with_feedback(maker, search, starts.with_feedback, limit, shaping); !ok)
       return fail(ok.error());
   }
-  if (search.good < starts.shaped) search.good = starts.shaped;  // shaped, the last level holds what plain ones don't
+  if (search.good < starts.with_feedback)
+    search.good = starts.with_feedback;  // improved, the last level holds what plain ones don't
   if (!search.best || search.best->prefix != search.good) {
     if (const Result<void> ok = search.take(maker.plain(search.good, task)); !ok) return fail(ok.error());
   }
@@ -119,8 +120,8 @@ namespace {
 
 // Where no finer level tells anything, a level half way on the scale of logarithms does: if it is all but exact, too, as
 // much as the least error that tells. Before anything is known, errors below a two-hundredth of the diagonal are no ruin.
-Result<std::vector<CurvePoint>> curve_before(const LevelMaker& maker, const Cut& cut, std::vector<CurvePoint> finer,
-                                             const Task& task) {
+Result<std::vector<CurvePoint>> curve_before(const LevelMaker& maker, const MeasuredLevel& cut,
+                                             std::vector<CurvePoint> finer, const Task& task) {
   constexpr double kSmall = 0.005;
   if (maker.plan().prunes()) return finer;  // the first part that vanishes is a jump by its nature
   const LevelError& e = cut.level.error;
@@ -128,7 +129,7 @@ Result<std::vector<CurvePoint>> curve_before(const LevelMaker& maker, const Cut&
   if (std::any_of(finer.begin(), finer.end(), knows) || e.measured_error <= kSmall * e.diagonal) return finer;
   const auto start = static_cast<double>(maker.plan().triangles_after(0));
   const auto between = static_cast<std::size_t>(std::sqrt(start * static_cast<double>(cut.level.triangles)));
-  const Result<Cut> probe = maker.plain(maker.plan().prefix_for(between), task);
+  const Result<MeasuredLevel> probe = maker.plain(maker.plan().prefix_for(between), task);
   if (!probe) return fail(probe.error());
   const double told = std::max(probe->level.error.measured_error, kLeastTelling * e.diagonal);
   finer.push_back({probe->level.triangles, told});
@@ -137,12 +138,12 @@ Result<std::vector<CurvePoint>> curve_before(const LevelMaker& maker, const Cut&
 
 }  // namespace
 
-Result<InLine> keep_in_line(LevelMaker& maker, Cut cut, const std::vector<CurvePoint>& finer, std::size_t last,
-                            const Task& task) {
+Result<InLine> keep_in_line(LevelMaker& maker, MeasuredLevel cut, const std::vector<CurvePoint>& finer,
+                            std::size_t last, const Task& task) {
   constexpr double kNear = 0.03;
   const Result<std::vector<CurvePoint>> curve = curve_before(maker, cut, finer, task.part(0.1));
   if (!curve) return fail(curve.error());
-  const auto in_line = [&](const Cut& c) {
+  const auto in_line = [&](const MeasuredLevel& c) {
     const LevelError& e = c.level.error;
     return e.measured_error <= most_in_line(*curve, c.level.triangles, e.diagonal, maker.plan().prunes());
   };
@@ -156,12 +157,12 @@ Result<InLine> keep_in_line(LevelMaker& maker, Cut cut, const std::vector<CurveP
   search.count(cut);
   if (const Result<void> ok = search.run(maker, 0, in_line, task.part(0.6)); !ok) return fail(ok.error());
   if (!search.best) return out;
-  Result<Cut> shaped = maker.shaped(search.good, task.part(0.3));
-  if (!shaped) return fail(shaped.error());
-  if (in_line(*shaped)) {
-    if (const Result<void> ok = search.take(std::move(shaped)); !ok) return fail(ok.error());
+  Result<MeasuredLevel> improved = maker.with_feedback(search.good, task.part(0.3));
+  if (!improved) return fail(improved.error());
+  if (in_line(*improved)) {
+    if (const Result<void> ok = search.take(std::move(improved)); !ok) return fail(ok.error());
   } else {
-    search.count(*shaped);
+    search.count(*improved);
   }
   out.cut = search.finish();
   return out;

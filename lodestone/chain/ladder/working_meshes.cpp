@@ -33,26 +33,27 @@ Result<void> weld_after(Mesh& mesh, const Snap& snap, const Task& task) {
 }  // namespace
 
 Result<std::vector<Mesh>> working_meshes(const Model& model, const std::vector<Mat4d>& placings,
-                                         const Influence& influence,
+                                         const SimplifyConstraints& constraints,
                                          const std::vector<std::vector<std::uint8_t>>& untouched, const Task& task) {
   std::vector<Mesh> out;
-  if (!(influence.weld_tolerance > 0) && !(influence.join_length > 0)) return out;
+  if (!(constraints.weld_tolerance > 0) && !(constraints.join_length > 0)) return out;
   out = model.meshes;
   for (std::size_t m = 0; m < out.size(); ++m) {
     // A length in the scene is smaller in a mesh that is drawn larger.
     const double scale = placings[m].scale_bound() > 0 ? placings[m].scale_bound() : 1;
-    const std::vector<std::uint8_t>& stays = untouched.empty() ? std::vector<std::uint8_t>{} : untouched[m];
+    const std::vector<std::uint8_t>& unchanging = untouched.empty() ? std::vector<std::uint8_t>{} : untouched[m];
     Result<void> done;
-    if (influence.weld_tolerance > 0) {
+    if (constraints.weld_tolerance > 0) {
       const auto snap = [&](Mesh& mesh) {
-        return spatial::snap_positions(mesh.positions, influence.weld_tolerance / scale,
-                                       vertices_of_triangles(mesh, stays), task);
+        return spatial::snap_positions(mesh.positions, constraints.weld_tolerance / scale,
+                                       vertices_of_triangles(mesh, unchanging), task);
       };
       done = weld_after(out[m], snap, task);
     }
-    if (done && influence.join_length > 0) {
+    if (done && constraints.join_length > 0) {
       const auto snap = [&](Mesh& mesh) {
-        return spatial::join_parts(mesh, influence.join_length / scale, vertices_of_triangles(mesh, stays), task);
+        return spatial::join_parts(mesh, constraints.join_length / scale, vertices_of_triangles(mesh, unchanging),
+                                   task);
       };
       done = weld_after(out[m], snap, task);
     }

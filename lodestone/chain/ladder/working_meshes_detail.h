@@ -5,7 +5,7 @@
 
 #include "lodestone/base/result.h"
 #include "lodestone/base/task.h"
-#include "lodestone/chain/ladder/influence.h"
+#include "lodestone/chain/ladder/constraints.h"
 #include "lodestone/core/model.h"
 
 namespace lodestone::chain::detail {
@@ -14,10 +14,10 @@ namespace lodestone::chain::detail {
 /// scene's.
 std::vector<Mat4d> largest_placings(const Model& model);
 
-/// Empty when `influence` neither welds nor joins; triangles keep their numbers. Vertices of triangles that must not
+/// Empty when `constraints` neither welds nor joins; triangles keep their numbers. Vertices of triangles that must not
 /// change (`untouched`, as untouched_triangles() gives them) stay in place. Errors: cancelled, bad_argument.
 Result<std::vector<Mesh>> working_meshes(const Model& model, const std::vector<Mat4d>& placings,
-                                         const Influence& influence,
+                                         const SimplifyConstraints& constraints,
                                          const std::vector<std::vector<std::uint8_t>>& untouched, const Task& task);
 
 }  // namespace lodestone::chain::detail

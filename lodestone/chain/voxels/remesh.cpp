@@ -46,7 +46,7 @@ Result<void> collapse(const Model& model, const RemeshOptions& options, Mesh mes
                       const Task& task) {
   LadderOptions ladder;
   ladder.distance = options.distance;
-  ladder.influence.prune = options.prune;
+  ladder.constraints.prune = options.prune;
   if (options.triangles > 0) ladder.triangles = {std::min(options.triangles, mesh.triangles.size())};
   if (options.error > 0) ladder.errors = {options.error};
   ladder.start = make_model(std::move(mesh), model);

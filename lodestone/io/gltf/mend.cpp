@@ -20,7 +20,7 @@ constexpr double kWeightSlack = 1e-7;   // of a sum, for each weight
 constexpr double kWorthTelling = 1e-3;  // less is rounding
 
 // An accessor and where it lies in its view.
-struct Place {
+struct Location {
   Accessor accessor;
   std::size_t view = 0, offset = 0;
 };
@@ -30,14 +30,14 @@ class Mender {
   Mender(const Document::Data& data, MendedViews& views) : data_(data), views_(views) {}
 
   // The accessor as it is by now: others that share its view may have been mended before. Nothing for accessors whose elements are no plain part of a view: sparse ones, zeros.
-  std::optional<Place> place_of(const Json& index) {
+  std::optional<Location> place_of(const Json& index) {
     const Json& accessors = array_member(data_.json, "accessors");
     const std::uint64_t a = as_uint(index).value_or(accessors.size());
     if (a >= accessors.size()) return std::nullopt;
     const Json* view = member(accessors[static_cast<std::size_t>(a)], "bufferView");
     Result<Accessor> found = find_accessor(data_, static_cast<std::size_t>(a));
     if (!found || found->own != nullptr || view == nullptr) return std::nullopt;
-    Place out{std::move(*found), static_cast<std::size_t>(as_uint(*view).value_or(0)), 0};
+    Location out{std::move(*found), static_cast<std::size_t>(as_uint(*view).value_or(0)), 0};
     out.offset = static_cast<std::size_t>(out.accessor.data - data_.views[out.view].bytes.data());
     if (const auto mended = views_.find(out.view); mended != views_.end()) {
       out.accessor.data = std::as_bytes(std::span(mended->second)).data() + out.offset;
@@ -55,7 +55,7 @@ class Mender {
   // False from the second time on: parts that are named again and again cost no more than once.
   bool is_first(std::vector<std::uint64_t> key) { return seen_.insert(std::move(key)).second; }
 
-  void write(const Place& place, std::size_t i, const double* values) {
+  void write(const Location& place, std::size_t i, const double* values) {
     const Accessor& a = place.accessor;
     const auto [found, fresh] = views_.try_emplace(place.view);
     if (fresh) {
@@ -98,7 +98,7 @@ bool mend_vector(Semantic semantic, std::size_t components, double* v) {
 
 // One accessor of floats, whoever uses it.
 bool mend_vectors(Mender& mender, Semantic semantic, const Json& index) {
-  const std::optional<Place> place = mender.place_of(index);
+  const std::optional<Location> place = mender.place_of(index);
   if (!place || place->accessor.type != ComponentType::float32) return false;
   if (!mender.is_first({place->accessor.index})) return false;
   const std::size_t n = place->accessor.components;
@@ -116,7 +116,7 @@ bool mend_vectors(Mender& mender, Semantic semantic, const Json& index) {
 }
 
 struct SkinPlaces {
-  std::vector<Place> joints, weights;  // by set
+  std::vector<Location> joints, weights;  // by set
 };
 
 SkinPlaces find_skin(Mender& mender, const Json& attributes) {
@@ -125,8 +125,8 @@ SkinPlaces find_skin(Mender& mender, const Json& attributes) {
     const Json* joints = member(attributes, fmt::format("JOINTS_{}", set));
     const Json* weights = member(attributes, fmt::format("WEIGHTS_{}", set));
     if (joints == nullptr || weights == nullptr) return out;
-    std::optional<Place> j = mender.place_of(*joints), w = mender.place_of(*weights);
-    const auto four = [](const std::optional<Place>& p) { return p && p->accessor.components == 4; };
+    std::optional<Location> j = mender.place_of(*joints), w = mender.place_of(*weights);
+    const auto four = [](const std::optional<Location>& p) { return p && p->accessor.components == 4; };
     if (!four(j) || !four(w) || j->accessor.count != w->accessor.count) return {};
     if (set > 0 &&
         (w->accessor.type != out.weights[0].accessor.type || w->accessor.count != out.weights[0].accessor.count)) {

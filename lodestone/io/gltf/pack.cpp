@@ -140,7 +140,7 @@ std::string GltfPack::finish() {
     all += bytes_[level];
     std::string().swap(bytes_[level]);
   }
-  for (const Place& place : places_) {
+  for (const Location& place : places_) {
     Json& view = json_["bufferViews"][place.view];
     const std::size_t offset = base[place.level] + place.offset;
     if (place.meshopt) {

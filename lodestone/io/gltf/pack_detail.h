@@ -46,7 +46,7 @@ class GltfPack {
   const std::vector<std::uint64_t>& level_bytes() const { return sizes_; }
 
  private:
-  struct Place {
+  struct Location {
     std::size_t view, level, offset;
     bool meshopt;
   };
@@ -57,7 +57,7 @@ class GltfPack {
   Compression compression_;
   std::vector<std::string> bytes_;    // a level, until finish()
   std::vector<std::uint64_t> sizes_;  // a level, from then on
-  std::vector<Place> places_;
+  std::vector<Location> places_;
   std::vector<std::size_t> free_;
   std::set<std::string> moved_;
   std::uint64_t fallback_bytes_ = 0;

@@ -52,9 +52,9 @@ class ObjFaces {
   void clear() { *this = {}; }
 
   /// Takes the corners of an `f` line. Errors: bad_format.
-  template <class Place>
+  template <class Location>
   Result<void> take(WordScanner& words, const ObjData& data, const ObjCounts& counts, std::uint32_t group,
-                    Place place) {
+                    Location place) {
     const Fault fault = take_corners(words, data, counts);
     if (fault.what.empty()) {
       add_polygon(data, group);

@@ -115,7 +115,7 @@ void EdgeEvaluator::add(std::uint32_t v, const Spoke& spoke) {
   const std::uint32_t w = spoke.neighbour;
   const VertexClass cv = state_.classes[v], cw = state_.classes[w];
   if (cv != VertexClass::interior && cw != VertexClass::interior) {
-    if (cv == VertexClass::fixed && cw == VertexClass::fixed) return;
+    if (cv == VertexClass::no_move && cw == VertexClass::no_move) return;
     if (spoke.count == 2 && !is_feature_edge(state_, v, w, spoke.triangles)) return;
   }
   if (((state_.zone[v] | state_.zone[w]) & kHeavy) != 0) return;
@@ -132,7 +132,7 @@ void EdgeEvaluator::add(std::uint32_t v, const Spoke& spoke) {
     const std::uint32_t second = spoke.count > 1 ? spoke.triangles[1] : kNone;
     candidate.cost += attributes_of(candidate, false, spoke.triangles[0], second);
   }
-  candidate.cost = std::max(candidate.cost, state_.cost_of_drift(kept, removed, 0)) * state_.weight_of(kept, removed);
+  candidate.cost = std::max(candidate.cost, state_.cost_of_error(kept, removed, 0)) * state_.weight_of(kept, removed);
   out_.push_back(candidate);
 }
 
@@ -195,7 +195,7 @@ void EdgeEvaluator::flush() {
     candidate.position = {x[i], y[i], z[i]};
     candidate.cost = cost[i];
     if (state_.attributes.blocks > 0) candidate.cost += attributes_of(candidate, true, first_[i], second_[i]);
-    candidate.cost = std::max(candidate.cost, state_.cost_of_drift(candidate.kept, candidate.removed, mean_square[i])) *
+    candidate.cost = std::max(candidate.cost, state_.cost_of_error(candidate.kept, candidate.removed, mean_square[i])) *
                      state_.weight_of(candidate.kept, candidate.removed);
   }
   waiting_ = 0;

@@ -77,7 +77,7 @@ class Fans {
       answer.vertex_class = VertexClass::feature;
       return answer;
     }
-    answer.vertex_class = VertexClass::fixed;
+    answer.vertex_class = VertexClass::no_move;
     answer.cause = non_manifold || features == 0 ? LockCause::non_manifold : LockCause::seam_corner;
     return answer;
   }
@@ -146,12 +146,12 @@ void classify_vertices(State& state, const EdgeCollapseOptions& options, const T
         answer = fans.classify();
       }
       LockCause cause = answer.cause;
-      if (!options.locked.empty() && options.locked[state.original[v]] != 0) {
+      if (!options.no_move.empty() && options.no_move[state.original[v]] != 0) {
         cause = LockCause::by_request;
       } else if (options.keep_border && answer.on_border) {
         cause = LockCause::border;
       }
-      state.classes[v] = cause == LockCause::none ? answer.vertex_class : VertexClass::fixed;
+      state.classes[v] = cause == LockCause::none ? answer.vertex_class : VertexClass::no_move;
       state.causes[state.original[v]] = cause;
     }
   });

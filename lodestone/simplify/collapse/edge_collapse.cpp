@@ -52,7 +52,7 @@ Result<void> check(const Mesh& mesh, const EdgeCollapseOptions& options) {
   if (mesh.triangles.size() > detail::kMaxTriangles) {
     return bad("the mesh has more triangles than can be handled", "split it into parts below 2^30 triangles");
   }
-  if (!options.locked.empty() && options.locked.size() != mesh.vertex_count()) {
+  if (!options.no_move.empty() && options.no_move.size() != mesh.vertex_count()) {
     return bad("the list of locked vertices has another length than the mesh's vertices", "give one entry a vertex");
   }
   if (!options.weights.empty() && options.weights.size() != mesh.vertex_count()) {
@@ -137,12 +137,12 @@ CollapseLog make_log(const Mesh& mesh, State& state, Run run) {
   return log;
 }
 
-struct Cut {
+struct LogPrefix {
   std::size_t count;
   StopReason stop;
 };
 
-Cut find_cut(const CollapseLog& log, const EdgeCollapseOptions& options) {
+LogPrefix find_prefix(const CollapseLog& log, const EdgeCollapseOptions& options) {
   const auto within = std::partition_point(log.collapses.begin(), log.collapses.end(), [&](const Collapse& c) {
     return static_cast<double>(c.error) <= options.max_error;
   });
@@ -181,9 +181,9 @@ LockCounts count_locks(const State& state) {
 
 // What the record needs no more: the most of the memory of a run, kept at the size that it began with.
 void release_mesh(State& state) {
-  free_memory(state.positions, state.drift, state.triangles, state.wedges, state.normals, state.first_normals,
-              state.quadrics, state.notes, state.classes, state.stars, state.wedge_normals, state.weights,
-              state.star_memory, state.groups, state.original, state.chart);
+  free_memory(state.positions, state.accumulated_error, state.triangles, state.wedges, state.normals,
+              state.first_normals, state.quadrics, state.notes, state.classes, state.stars, state.wedge_normals,
+              state.weights, state.star_memory, state.groups, state.original, state.chart);
   state.attributes = {};
 }
 
@@ -203,12 +203,12 @@ Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOp
   result.locked = count_locks(*state);
   release_mesh(*state);
   CollapseLog log = make_log(mesh, *state, std::move(run));
-  const Cut cut = find_cut(log, options);
-  result.stop = cut.stop;
-  if (cut.count > 0) result.estimated_error = log.collapses[cut.count - 1].error;
+  const LogPrefix prefix = find_prefix(log, options);
+  result.stop = prefix.stop;
+  if (prefix.count > 0) result.estimated_error = log.collapses[prefix.count - 1].error;
   ReplayOptions replaying;
   replaying.input = Input::valid;
-  Result<ReplayResult> replayed = replay(mesh, log, cut.count, replaying, task);
+  Result<ReplayResult> replayed = replay(mesh, log, prefix.count, replaying, task);
   if (!replayed) return fail(replayed.error());
   result.mesh = std::move(replayed->mesh);
   result.origin = std::move(replayed->origin);

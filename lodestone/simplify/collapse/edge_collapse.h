@@ -32,7 +32,7 @@ struct EdgeCollapseOptions {
   double max_error =
       std::numeric_limits<double>::infinity();  ///< stop before an estimated error above this, units of `metric`
   bool keep_border = false;                     ///< no vertex of an open border moves or vanishes
-  std::vector<std::uint8_t> locked;             ///< one a vertex, non-zero = stays; empty = none
+  std::vector<std::uint8_t> no_move;            ///< one a vertex, non-zero = neither moves nor vanishes; empty = none
   /// Importance of each vertex, 0 or more: an edge costs as many times as much as its more important end says, so that
   /// w keeps triangles as if squared errors counted w-fold. A merged vertex keeps the larger. Empty = 1 everywhere.
   std::vector<float> weights;
@@ -74,7 +74,7 @@ struct EdgeCollapseResult {
 /// Collapses edges until a target holds. Lindstrom & Turk 1998 (memoryless, volume-preserving placement) in passes over
 /// flat arrays; see docs/papers/edge-collapse.md. Closed manifold input gives closed manifold output. Same bytes for
 /// any number of threads. Time O(n log n). Positions and errors in model units. Errors: bad_argument (neither target
-/// set, wrong size of `locked` or `weights`, a weight below 0 or not finite, a metric
+/// set, wrong size of `no_move` or `weights`, a weight below 0 or not finite, a metric
 /// that is not finite; those of validate()), cancelled.
 Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOptions& options = {}, Task task = {});
 

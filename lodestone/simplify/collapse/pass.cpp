@@ -17,10 +17,10 @@ namespace {
 // Small enough for a range to stay in a core's second cache, large enough for few edges to cross.
 constexpr std::size_t kRange = 8192;
 
-// The drift, squared, costs as if it were over this many mean triangles. Over ten meshes at 50, 10 and 1 %, mean over
+// The accumulated error, squared, costs as if it were over this many mean triangles. Over ten meshes at 50, 10 and 1 %, mean over
 // Lindstrom-Turk's and maximum over the best peer's: 0.25 1.035 1.48, 0.986 1.08, 0.970 1.14; 0.5 1.040 1.18, 0.995
 // 0.97, 0.961 0.92; 1 1.054 1.14, 1.010 0.95, 0.993 0.88.
-constexpr float kDriftWeight = 0.5F;
+constexpr float kErrorWeight = 0.5F;
 
 // Marks the vertices whose rings lie in their range; ranges begin at multiples of kRange less `shift`.
 template <class Corners>
@@ -188,19 +188,19 @@ void append_steps(const std::vector<Sweeper>& sweepers, std::vector<Step>& steps
     for (const Step& step : sweeper.steps()) ++start[step.order + 1];
   }
   for (std::size_t b = 0; b < kBins; ++b) start[b + 1] += start[b];
-  struct Place {
+  struct StepOf {
     const Sweeper* sweeper;
     const Step* step;
   };
-  std::vector<Place> places(start[kBins]);
+  std::vector<StepOf> sorted(start[kBins]);
   for (const Sweeper& sweeper : sweepers) {
-    for (const Step& step : sweeper.steps()) places[start[step.order]++] = {&sweeper, &step};
+    for (const Step& step : sweeper.steps()) sorted[start[step.order]++] = {&sweeper, &step};
   }
-  for (const Place& place : places) {
-    steps.push_back(*place.step);
+  for (const StepOf& entry : sorted) {
+    steps.push_back(*entry.step);
     steps.back().first_wedge = static_cast<std::uint32_t>(merges.size());
-    const auto first = place.sweeper->merges().begin() + place.step->first_wedge;
-    merges.insert(merges.end(), first, first + place.step->wedge_count);
+    const auto first = entry.sweeper->merges().begin() + entry.step->first_wedge;
+    merges.insert(merges.end(), first, first + entry.step->wedge_count);
   }
 }
 
@@ -214,14 +214,14 @@ void compact(State& state) {
     state.positions[next] = state.positions[v];
     state.classes[next] = state.classes[v];
     state.original[next] = state.original[v];
-    state.drift[next] = state.drift[v];
+    state.accumulated_error[next] = state.accumulated_error[v];
     if (!state.weights.empty()) state.weights[next] = state.weights[v];
     ++next;
   }
   state.positions.resize(next);
   state.classes.resize(next);
   state.original.resize(next);
-  state.drift.resize(next);
+  state.accumulated_error.resize(next);
   if (!state.weights.empty()) state.weights.resize(next);
   std::size_t kept = 0;
   for (std::size_t t = 0; t < state.triangles.size(); ++t) {
@@ -252,7 +252,7 @@ void compact(State& state) {
 std::size_t run_pass(State& state, double share, std::vector<Step>& steps, std::vector<WedgeMerge>& merges,
                      const Task& task) {
   prepare(state, task);
-  state.drift_weight = kDriftWeight * mean_weight(state, task);
+  state.error_weight = kErrorWeight * mean_weight(state, task);
   const float max_cost = cost_limit(state, share);
   std::vector<Sweeper> sweepers;
   sweepers.reserve(2 * (state.positions.size() / kRange + 2) + 1);

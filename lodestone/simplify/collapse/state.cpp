@@ -250,7 +250,7 @@ Result<State> make_state(const Mesh& mesh, const EdgeCollapseOptions& options, c
   for (std::size_t i = 0; i < n && !options.weights.empty(); ++i) {
     state.weights.push_back(options.weights[state.original[i]]);
   }
-  state.drift.assign(n, 0);
+  state.accumulated_error.assign(n, 0);
   take_wedges(state, mesh, task);
   take_triangles(state, mesh, place, task);
   if (!state.wedges.empty()) take_attributes(state, mesh, options.attribute_weights);

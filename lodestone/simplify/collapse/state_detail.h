@@ -36,7 +36,7 @@ inline void transpose(Float4& a, Float4& b, Float4& c, Float4& d) {
 enum class VertexClass : std::uint8_t {
   interior,  ///< on no feature edge, one closed fan: may move and vanish
   feature,   ///< on exactly two feature edges that every fan joins: may move and vanish along them
-  fixed,     ///< where features meet or end, bow-ties, locked by request: stays; others may collapse into it
+  no_move,   ///< where features meet or end, bow-ties, locked by request: stays; others may collapse into it
 };
 
 /// Why a vertex is fixed, for LockCounts.
@@ -162,7 +162,7 @@ struct State {
   // their lowest vertices, so that neighbours are near in memory. A triangle that has vanished names kNone.
   std::vector<Vec3f> positions;
   std::vector<VertexClass> classes;
-  std::vector<float> drift;                    ///< how far the surface here is from the input, about; working frame
+  std::vector<float> accumulated_error;        ///< how far the surface here is from the input, about; working frame
   std::vector<float> weights;                  ///< EdgeCollapseOptions::weights; empty = 1
   std::vector<std::uint32_t> original;         ///< vertex of the input mesh
   std::vector<Triangle> triangles;             ///< vertices
@@ -189,7 +189,7 @@ struct State {
   std::vector<Quadric> quadrics;
   std::vector<std::uint8_t> zone;  ///< bits of Zone
   std::vector<Notes> notes;
-  float drift_weight = 0;  ///< what drift, squared, costs
+  float error_weight = 0;  ///< what the accumulated error, squared, costs
 
   float fold_cosine = 0;  ///< EdgeCollapseOptions::fold_cosine
 
@@ -198,9 +198,9 @@ struct State {
   }
   /// What it costs to merge two vertices where the distances to the planes around have this mean square: the largest is
   /// some 1.5 times its root. The sweep knows better when it gets there, but most turns then come when they should.
-  float cost_of_drift(std::uint32_t v, std::uint32_t w, float mean_square) const {
-    const float most = std::max(drift[v], drift[w]) + 1.5F * std::sqrt(mean_square);
-    return drift_weight * most * most;
+  float cost_of_error(std::uint32_t v, std::uint32_t w, float mean_square) const {
+    const float most = std::max(accumulated_error[v], accumulated_error[w]) + 1.5F * std::sqrt(mean_square);
+    return error_weight * most * most;
   }
   std::span<const std::uint32_t> star_of(std::uint32_t v) const { return {stars[v].entries, stars[v].count}; }
 };

@@ -350,10 +350,10 @@ void Sweeper::try_collapse(Candidate candidate) {
   if (kept_.size() > kMaxValence || !link_allows(candidate)) return;
   const bool moved = state_.classes[k] == state_.classes[r];
   if (flips(candidate, moved) || folds()) return;
-  const float weight = state_.weight_of(k, r), drift_scale = state_.drift_weight * weight;
-  const float drift = drift_after(candidate, std::sqrt(candidate.cost / drift_scale));
-  float cost = std::max(candidate.cost, drift_scale * drift * drift);
-  float error = drift;
+  const float weight = state_.weight_of(k, r), error_scale = state_.error_weight * weight;
+  const float accumulated = error_after(candidate, std::sqrt(candidate.cost / error_scale));
+  float cost = std::max(candidate.cost, error_scale * accumulated * accumulated);
+  float error = accumulated;
   if (!state_.wedges.empty()) {
     if (!pair_wedges(candidate, moved)) return;
     cost += blend_wedges(candidate, moved) * weight;
@@ -370,7 +370,7 @@ void Sweeper::try_collapse(Candidate candidate) {
   candidate.cost = cost;
   record(candidate, moved, error);
   apply(candidate, moved);
-  state_.drift[k] = drift;
+  state_.accumulated_error[k] = accumulated;
   add_new_edges(k);
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "lodestone/base/task.h"
+#include "lodestone/simplify/collapse/accumulated_error_detail.h"
 #include "lodestone/simplify/collapse/candidates_detail.h"
-#include "lodestone/simplify/collapse/drift_detail.h"
 
 namespace lodestone::simplify::detail {
 
@@ -49,7 +49,7 @@ class Sweeper {
   bool has_fold(std::span<const Corner> corners, Normals normals) const;
   bool pair_wedges(const Candidate& candidate, bool moved);
   std::uint32_t nearest_normal(std::uint32_t wedge, std::uint32_t chart) const;
-  float drift_after(const Candidate& candidate, float enough);
+  float error_after(const Candidate& candidate, float enough);
   void record(const Candidate& candidate, bool moved, float error);
   float blend_wedges(const Candidate& candidate, bool moved);
   float share_by_place(const Candidate& candidate) const;

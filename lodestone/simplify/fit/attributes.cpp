@@ -11,12 +11,12 @@ namespace lodestone::simplify::detail {
 namespace {
 
 // A place on the original: its triangle's wedges and their weights.
-struct Spot {
+struct ChartPoint {
   Triangle wedges;
   std::array<double, 3> weights;
 };
 
-Spot spot_of(const FitTarget& target, Vec3d p) {
+ChartPoint chart_point(const FitTarget& target, Vec3d p) {
   const spatial::Nearest near = target.tree().closest(p);
   const auto [a, b, c] = target.surface().corners(near.triangle);
   return {target.original().triangles[target.surface().drawn[near.triangle]], barycentric(near.point, a, b, c)};
@@ -28,7 +28,7 @@ bool is_carried(const AttributeStream& stream) {
 }
 
 template <class T>
-double value_at(const std::vector<T>& values, std::uint32_t components, const Spot& spot, std::uint32_t c) {
+double value_at(const std::vector<T>& values, std::uint32_t components, const ChartPoint& spot, std::uint32_t c) {
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     sum += spot.weights[k] * static_cast<double>(values[std::size_t{spot.wedges[k]} * components + c]);
@@ -76,14 +76,15 @@ struct TrianglesAt {
 };
 
 template <class T>
-void carry(const AttributeStream& original, const std::vector<T>& from, std::uint32_t wedge, const Spot& old_spot,
-           const Spot& new_spot, std::span<const Triangle> around, const std::vector<T>& before, std::vector<T>& to) {
+void carry(const AttributeStream& original, const std::vector<T>& from, std::uint32_t wedge,
+           const ChartPoint& old_point, const ChartPoint& new_point, std::span<const Triangle> around,
+           const std::vector<T>& before, std::vector<T>& to) {
   const std::uint32_t n = original.components;
   std::vector<double> change(n);
   double off = 0;
   for (std::uint32_t c = 0; c < n; ++c) {
-    const double then = value_at(from, n, old_spot, c);
-    change[c] = value_at(from, n, new_spot, c) - then;
+    const double then = value_at(from, n, old_point, c);
+    change[c] = value_at(from, n, new_point, c) - then;
     const double d = static_cast<double>(before[std::size_t{wedge} * n + c]) - then;
     off += d * d;
   }
@@ -134,8 +135,8 @@ void carry_attributes(const FitTarget& target, const std::vector<Vec3f>& before,
       const auto wedge = static_cast<std::uint32_t>(i);
       const std::uint32_t vertex = level.vertex_of(wedge);
       if (level.positions[vertex] == before[vertex]) continue;
-      const Spot then = spot_of(target, to_double(before[vertex]) + level.offset);
-      const Spot now = spot_of(target, level.position(vertex));
+      const ChartPoint then = chart_point(target, to_double(before[vertex]) + level.offset);
+      const ChartPoint now = chart_point(target, level.position(vertex));
       if (target.charts()[then.wedges[0]] != target.charts()[now.wedges[0]]) continue;
       for (std::size_t s = 0; s < level.attributes.size(); ++s) {
         if (sources[s] == nullptr) continue;

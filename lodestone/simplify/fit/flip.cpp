@@ -20,7 +20,7 @@ constexpr double kFacing = 0.5;   // cosine between new faces and the mean of th
 constexpr double kThinner = 0.5;  // of the smallest angle's sine before, where that is small
 constexpr double kThin = 0.17;    // sine: 10 degrees
 constexpr double kFold = -0.5;    // cosine between a new face and those beside it, where the old were not so
-constexpr std::size_t kLevelTies = std::size(kInner);  // the last ones of each triangle are points of the level
+constexpr std::size_t kLevelPoints = std::size(kInner);  // the last ones of each triangle are points of the level
 
 // The quadrilateral around an edge: first triangle (a, b, c), second (b, a, d).
 struct Quad {
@@ -83,27 +83,29 @@ double distance_sq(const FitTarget& target, Vec3d p, std::uint32_t& hint) {
 }
 
 // How much the energy falls by turning the edge; 0 where it must not be.
-double gain_of(const FitTarget& target, const Ties& ties, const spatial::Surface& level, const Neighbors& neighbors,
-               const Quad& q, double area) {
+double gain_of(const FitTarget& target, const Correspondences& correspondences, const spatial::Surface& level,
+               const Neighbors& neighbors, const Quad& q, double area) {
   const Corners old1 = level.corners(q.first), old2 = level.corners(q.second);
   const auto& p = level.positions;
   const Corners new1{p[q.a], p[q.d], p[q.c]}, new2{p[q.d], p[q.b], p[q.c]};
   double before = 0, points_before = 0, points_after = 0;
   for (const auto& [t, corners] : {std::pair{q.first, old1}, std::pair{q.second, old2}}) {
-    for (std::uint32_t i = ties.first[t]; i < ties.first[t + 1]; ++i) {
-      const Tie& tie = ties.list[i];
-      const double energy = static_cast<double>(tie.weight) * length_sq(tie.partner - tie.on(corners));
+    for (std::uint32_t i = correspondences.first[t]; i < correspondences.first[t + 1]; ++i) {
+      const Correspondence& correspondence = correspondences.list[i];
+      const double energy =
+          static_cast<double>(correspondence.weight) * length_sq(correspondence.partner - correspondence.on(corners));
       before += energy;
-      if (i + kLevelTies >= ties.first[t + 1]) continue;
+      if (i + kLevelPoints >= correspondences.first[t + 1]) continue;
       points_before += energy;
-      const double d = std::min(closest_point(tie.partner, new1[0], new1[1], new1[2]).distance_sq,
-                                closest_point(tie.partner, new2[0], new2[1], new2[2]).distance_sq);
-      points_after += static_cast<double>(tie.weight) * d;
+      const double d = std::min(closest_point(correspondence.partner, new1[0], new1[1], new1[2]).distance_sq,
+                                closest_point(correspondence.partner, new2[0], new2[1], new2[2]).distance_sq);
+      points_after += static_cast<double>(correspondence.weight) * d;
     }
   }
   if (!(points_after < points_before) || !(points_after < kWorth * before)) return 0;
   if (!shape_allows(level, neighbors, q, old1, old2, new1, new2)) return 0;
-  const double worst = static_cast<double>(std::max(ties.worst[q.first].distance, ties.worst[q.second].distance));
+  const double worst =
+      static_cast<double>(std::max(correspondences.worst[q.first].distance, correspondences.worst[q.second].distance));
   const double limit_sq = worst * worst;
   double after = points_after;
   std::uint32_t hint = kNone;
@@ -111,12 +113,12 @@ double gain_of(const FitTarget& target, const Ties& ties, const spatial::Surface
     if (distance_sq(target, lerp(p[q.c], p[q.d], share), hint) > limit_sq) return 0;
   }
   for (const Corners& corners : {new1, new2}) {
-    const double weight = length(scaled_normal(corners[0], corners[1], corners[2])) / 2 / area / kLevelTies;
+    const double weight = length(scaled_normal(corners[0], corners[1], corners[2])) / 2 / area / kLevelPoints;
     for (const auto& w : kInner) {
-      Tie tie;
-      tie.second = w[0];
-      tie.third = w[1];
-      const double d_sq = distance_sq(target, tie.on(corners), hint);
+      Correspondence correspondence;
+      correspondence.second = w[0];
+      correspondence.third = w[1];
+      const double d_sq = distance_sq(target, correspondence.on(corners), hint);
       if (d_sq > limit_sq) return 0;
       after += weight * d_sq;
     }
@@ -142,9 +144,9 @@ void turn(const Quad& q, std::vector<Triangle>& triangles) {
 
 }  // namespace
 
-std::vector<TrianglePair> flip_edges(const FitTarget& target, const Ties& ties, const FixedSides& fixed,
-                                     std::span<const std::uint8_t> held, spatial::Surface& level,
-                                     std::vector<Triangle>& wedges, const Task& task) {
+std::vector<TrianglePair> flip_edges(const FitTarget& target, const Correspondences& correspondences,
+                                     const NoFlipEdges& no_flip, std::span<const std::uint8_t> no_move,
+                                     spatial::Surface& level, std::vector<Triangle>& wedges, const Task& task) {
   const Neighbors neighbors = spatial::triangle_neighbors(level);
   const CornersAt around = corners_at(level);
   double area = 0;
@@ -160,9 +162,9 @@ std::vector<TrianglePair> flip_edges(const FitTarget& target, const Ties& ties, 
         const std::uint32_t other = neighbors[t][k];
         if (other == kNone || other < t) continue;
         const Quad q = quad_of(level, static_cast<std::uint32_t>(t), k, other);
-        if (held[q.a] != 0 && held[q.b] != 0 && held[q.c] != 0 && held[q.d] != 0) continue;
-        if (q.c == q.d || std::binary_search(fixed.begin(), fixed.end(), std::minmax({q.a, q.b}))) continue;
-        gains[t][k] = static_cast<float>(gain_of(target, ties, level, neighbors, q, area));
+        if (no_move[q.a] != 0 && no_move[q.b] != 0 && no_move[q.c] != 0 && no_move[q.d] != 0) continue;
+        if (q.c == q.d || std::binary_search(no_flip.begin(), no_flip.end(), std::minmax({q.a, q.b}))) continue;
+        gains[t][k] = static_cast<float>(gain_of(target, correspondences, level, neighbors, q, area));
       }
     }
   });

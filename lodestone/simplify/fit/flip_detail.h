@@ -6,19 +6,19 @@
 #include <utility>
 #include <vector>
 
-#include "lodestone/simplify/fit/ties_detail.h"
+#include "lodestone/simplify/fit/correspondences_detail.h"
 
 namespace lodestone::simplify::detail {
 
-/// Low and high vertex of sides that must stay, sorted.
-using FixedSides = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+/// Low and high vertex of edges that are not turned, sorted.
+using NoFlipEdges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// Turns each edge over that is worth it, no triangle twice: where the squared distances of the ties around fall by two
+/// Turns each edge over that is worth it, no triangle twice: where the squared distances of the correspondences around fall by two
 /// per cent, no worse distance appears, no edge is doubled, and no face turns away, folds or becomes much thinner.
-/// Where all four vertices around are `held` an edge stays. `wedges` goes along with level.triangles. Returns the pairs
+/// Where all four vertices around are `no_move` an edge stays. `wedges` goes along with level.triangles. Returns the pairs
 /// of triangles that changed. O(triangles log triangles of the target).
-std::vector<TrianglePair> flip_edges(const FitTarget& target, const Ties& ties, const FixedSides& fixed,
-                                     std::span<const std::uint8_t> held, spatial::Surface& level,
-                                     std::vector<Triangle>& wedges, const Task& task);
+std::vector<TrianglePair> flip_edges(const FitTarget& target, const Correspondences& correspondences,
+                                     const NoFlipEdges& no_flip, std::span<const std::uint8_t> no_move,
+                                     spatial::Surface& level, std::vector<Triangle>& wedges, const Task& task);
 
 }  // namespace lodestone::simplify::detail

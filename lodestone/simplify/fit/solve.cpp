@@ -1,5 +1,5 @@
-// Method   Gauss-Newton on distances along the ties, block-Jacobi preconditioned conjugate gradients
-// Cost     O(ties + steps * triangles)
+// Method   Gauss-Newton on distances along the correspondences, block-Jacobi preconditioned conjugate gradients
+// Cost     O(correspondences + steps * triangles)
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include "lodestone/base/parallel.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/simplify/fit/solve_detail.h"
-#include "lodestone/spatial/crossings.h"
 #include "lodestone/spatial/neighbors.h"
+#include "lodestone/spatial/self_intersections.h"
 
 namespace lodestone::simplify::detail {
 
@@ -60,16 +60,16 @@ struct Element {
   std::array<double, 3> weight{};
 };
 
-Element element_of(const spatial::Surface& level, const Ties& ties, std::size_t t) {
+Element element_of(const spatial::Surface& level, const Correspondences& correspondences, std::size_t t) {
   Element e;
   const std::array<Vec3d, 3> corners = level.corners(t);
   const Vec3d normal = normalized(scaled_normal(corners[0], corners[1], corners[2]));
-  for (std::uint32_t i = ties.first[t]; i < ties.first[t + 1]; ++i) {
-    const Tie& tie = ties.list[i];
-    const double s = static_cast<double>(tie.second), r = static_cast<double>(tie.third);
+  for (std::uint32_t i = correspondences.first[t]; i < correspondences.first[t + 1]; ++i) {
+    const Correspondence& correspondence = correspondences.list[i];
+    const double s = static_cast<double>(correspondence.second), r = static_cast<double>(correspondence.third);
     const double w[3] = {1 - s - r, s, r};
-    const Vec3d to = tie.partner - tie.on(corners);
-    const double d = length(to), weight = static_cast<double>(tie.weight);
+    const Vec3d to = correspondence.partner - correspondence.on(corners);
+    const double d = length(to), weight = static_cast<double>(correspondence.weight);
     const Vec3d u = d > 0 ? to / d : normal;
     Sym outer{};
     add_outer(outer, u, weight);
@@ -108,14 +108,16 @@ CornersAt corners_at(const spatial::Surface& level) {
   return at;
 }
 
-std::vector<Vec3d> solve_moves(const spatial::Surface& level, const Ties& ties, const CornersAt& around,
-                               std::span<const std::uint8_t> held, double damping, const Task& task) {
+std::vector<Vec3d> solve_displacements(const spatial::Surface& level, const Correspondences& correspondences,
+                                       const CornersAt& around, std::span<const std::uint8_t> no_move, double damping,
+                                       const Task& task) {
   const std::size_t n = level.positions.size();
   std::vector<Element> elements(level.triangles.size());
   parallel_for(elements.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t t = begin; t < end; ++t) {
       const Triangle& v = level.triangles[t];
-      if (held[v[0]] == 0 || held[v[1]] == 0 || held[v[2]] == 0) elements[t] = element_of(level, ties, t);
+      if (no_move[v[0]] == 0 || no_move[v[1]] == 0 || no_move[v[2]] == 0)
+        elements[t] = element_of(level, correspondences, t);
     }
   });
   const auto for_vertices = [&](auto&& body) {
@@ -137,7 +139,7 @@ std::vector<Vec3d> solve_moves(const spatial::Surface& level, const Ties& ties, 
   std::vector<double> drag(n, 0.0);
   std::vector<Sym> preconditioner(n);
   for_vertices([&](std::size_t v) {
-    if (held[v] != 0) return;
+    if (no_move[v] != 0) return;
     Sym diagonal{};
     for (std::uint32_t i = around.first[v]; i < around.first[v + 1]; ++i) {
       const Element& e = elements[around.list[i] / 3];
@@ -157,7 +159,7 @@ std::vector<Vec3d> solve_moves(const spatial::Surface& level, const Ties& ties, 
   const double start = now;
   for (int step = 0; step < kSteps && now > kEnough * start && !task.cancelled(); ++step) {
     for_vertices([&](std::size_t v) {
-      if (held[v] != 0) return;
+      if (no_move[v] != 0) return;
       Vec3d sum = direction[v] * drag[v];
       for (std::uint32_t i = around.first[v]; i < around.first[v + 1]; ++i) {
         const std::uint32_t t = around.list[i] / 3;
@@ -236,13 +238,13 @@ class Mover {
       const Triangle& v = level_.triangles[t];
       moved[t] = moves_[v[0]] != Vec3d{} || moves_[v[1]] != Vec3d{} || moves_[v[2]] != Vec3d{} ? 1 : 0;
     }
-    const auto now = spatial::crossings(spatial::Bvh(level_, task), moved, task);
+    const auto now = spatial::self_intersections(spatial::Bvh(level_, task), moved, task);
     if (now.empty() || task.cancelled()) return false;
     spatial::Surface old = level_;
     old.positions = before_;
     std::vector<std::uint8_t> suspect(moved.size(), 0);
     for (const auto& [t, u] : now) suspect[t] = suspect[u] = 1;
-    const auto then = spatial::crossings(spatial::Bvh(old, task), suspect, task);
+    const auto then = spatial::self_intersections(spatial::Bvh(old, task), suspect, task);
     bool any = false;
     for (const auto& pair : now) {
       if (std::binary_search(then.begin(), then.end(), pair)) continue;
@@ -298,8 +300,8 @@ class Mover {
 
 }  // namespace
 
-void take_moves(spatial::Surface& level, const CornersAt& around, std::vector<Vec3d> moves,
-                std::span<const Vec3d> facing, Vec3d offset, const Task& task) {
+void apply_displacements(spatial::Surface& level, const CornersAt& around, std::vector<Vec3d> moves,
+                         std::span<const Vec3d> facing, Vec3d offset, const Task& task) {
   Mover mover(level, around, std::move(moves), facing, offset);
   mover.settle(task);
   while (mover.uncross(task)) mover.settle(task);  // ends: each time moves have vanished

@@ -9,7 +9,7 @@
 #include "lodestone/math/box.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/simplify/fit/attributes_detail.h"
-#include "lodestone/spatial/crossings.h"
+#include "lodestone/spatial/self_intersections.h"
 
 namespace lodestone::simplify {
 
@@ -44,7 +44,7 @@ struct Mix {
 
 class Splitter {
  public:
-  Splitter(const FittedLevel& level, bool keep_borders, std::span<const std::uint8_t> stays, const Task& task)
+  Splitter(const TrackedLevel& level, bool keep_borders, std::span<const std::uint8_t> no_move, const Task& task)
       : level_(level),
         task_(task),
         keep_borders_(keep_borders),
@@ -53,16 +53,16 @@ class Splitter {
         around_(vertex_triangles(mesh_)),
         tree_(level.surface(), task),
         touched_(mesh_.triangles.size(), 0),
-        stays_(stays.begin(), stays.end()) {
-    stays_.resize(mesh_.vertex_count(), 0);
+        no_move_(no_move.begin(), no_move.end()) {
+    no_move_.resize(mesh_.vertex_count(), 0);
     for (const Edge& edge : edges_.edges) {
-      if (edge.count == 1 ? keep_borders : !is_smooth(edge)) stays_[edge.a] = stays_[edge.b] = 1;
+      if (edge.count == 1 ? keep_borders : !is_smooth(edge)) no_move_[edge.a] = no_move_[edge.b] = 1;
     }
   }
 
   // How many triangles were added; 1 for a vertex that was pulled. All of the way to the original, or half or a fourth
   // of it where faces would turn too far; fitting goes on from there.
-  std::size_t split(std::uint32_t t, const FittedLevel::Worst& worst) {
+  std::size_t split(std::uint32_t t, const TriangleError& worst) {
     for (const double way : {1.0, 0.5, 0.25}) {
       if (touched_[t] != 0) return 0;
       if (const std::size_t added = split(t, worst, way); added > 0) return added;
@@ -84,9 +84,10 @@ class Splitter {
   }
 
  private:
-  std::size_t split(std::uint32_t t, const FittedLevel::Worst& worst, double way) {
+  std::size_t split(std::uint32_t t, const TriangleError& worst, double way) {
     const Triangle v = mesh_.vertices_of(t);
-    const double weights[3] = {1 - worst.second - worst.third, worst.second, worst.third};
+    const double second = static_cast<double>(worst.second), third = static_cast<double>(worst.third);
+    const double weights[3] = {1 - second - third, second, third};
     Vec3d at{};
     for (std::size_t k = 0; k < 3; ++k) at += mesh_.position(v[k]) * weights[k];
     const Vec3d move = (worst.partner - at) * way;
@@ -168,7 +169,7 @@ class Splitter {
       if (touched_[t] != 0) return false;
       const Triangle w = mesh_.vertices_of(t);
       const bool joined = std::any_of(w.begin(), w.end(), [&](auto x) { return x == v[0] || x == v[1] || x == v[2]; });
-      return !joined && spatial::triangles_cross(p, tree_.surface().corners(n));
+      return !joined && spatial::triangles_intersect(p, tree_.surface().corners(n));
     });
   }
 
@@ -184,7 +185,7 @@ class Splitter {
 
   // A vertex that sticks out goes that far.
   std::size_t pull_in(std::uint32_t vertex, Vec3d move) {
-    if (stays_[vertex] != 0) return 0;
+    if (no_move_[vertex] != 0) return 0;
     const Vec3d place = mesh_.position(vertex) + move;
     for (const std::uint32_t t : around_.of(vertex)) {
       const Triangle& w = mesh_.triangles[t];
@@ -197,14 +198,14 @@ class Splitter {
     return 1;
   }
 
-  std::size_t split_face(std::uint32_t t, const FittedLevel::Worst& worst, Vec3d place) {
+  std::size_t split_face(std::uint32_t t, const TriangleError& worst, Vec3d place) {
     if (!may_cut(t, {0, 1, 2}, place)) return 0;
     touched_[t] = 1;
     const Triangle w = mesh_.triangles[t];
     const std::uint32_t wedge = add_wedge(mesh_, add_vertex(place), w[0]);
-    const double first_two = 1 - worst.third;
-    mixes_.push_back({wedge, w[1], static_cast<float>(first_two > 0 ? worst.second / first_two : 0)});
-    mixes_.push_back({wedge, w[2], static_cast<float>(worst.third)});
+    const double second = static_cast<double>(worst.second), first_two = 1 - static_cast<double>(worst.third);
+    mixes_.push_back({wedge, w[1], static_cast<float>(first_two > 0 ? second / first_two : 0)});
+    mixes_.push_back({wedge, w[2], worst.third});
     mesh_.triangles[t] = {w[0], w[1], wedge};
     add_triangle({w[1], w[2], wedge}, t);
     add_triangle({w[2], w[0], wedge}, t);
@@ -253,7 +254,7 @@ class Splitter {
     return around.size();
   }
 
-  const FittedLevel& level_;
+  const TrackedLevel& level_;
   const Task& task_;
   bool keep_borders_;
   Mesh mesh_;
@@ -261,7 +262,7 @@ class Splitter {
   VertexTriangles around_;
   spatial::Bvh tree_;  // of the level as it was
   std::vector<std::uint8_t> touched_;
-  std::vector<std::uint8_t> stays_;  // of the level's vertices
+  std::vector<std::uint8_t> no_move_;  // of the level's vertices
   std::vector<Vec3f> moved_;
   std::vector<Mix> mixes_;
   std::vector<std::uint32_t> near_;
@@ -269,9 +270,10 @@ class Splitter {
 
 }  // namespace
 
-SplitResult split_worst(const FittedLevel& level, double share, std::size_t most, bool keep_borders,
-                        std::span<const std::uint8_t> stays, std::span<const std::uint8_t> whole, const Task& task) {
-  const std::vector<FittedLevel::Worst> worst = level.worst();
+SplitResult split_worst(const TrackedLevel& level, double share, std::size_t most, bool keep_borders,
+                        std::span<const std::uint8_t> no_move, std::span<const std::uint8_t> no_split,
+                        const Task& task) {
+  const std::vector<TriangleError> worst = level.worst();
   std::vector<std::uint32_t> order;
   for (std::uint32_t t = 0; t < worst.size(); ++t) {
     if (worst[t].distance > share * level.max()) order.push_back(t);
@@ -279,10 +281,10 @@ SplitResult split_worst(const FittedLevel& level, double share, std::size_t most
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return worst[a].distance > worst[b].distance; });
   if (level.surface().triangles.empty()) return {level.mesh(), {}};
-  Splitter splitter(level, keep_borders, stays, task);
+  Splitter splitter(level, keep_borders, no_move, task);
   if (task.cancelled()) return {level.mesh(), {}};
-  for (std::uint32_t v = 0; v < whole.size(); ++v) {
-    if (whole[v] != 0) splitter.leave_around(v);
+  for (std::uint32_t v = 0; v < no_split.size(); ++v) {
+    if (no_split[v] != 0) splitter.leave_around(v);
   }
   std::size_t added = 0;
   for (const std::uint32_t t : order) {

@@ -8,7 +8,7 @@
 
 #include "lodestone/base/task.h"
 #include "lodestone/core/mesh.h"
-#include "lodestone/simplify/fit/fit.h"
+#include "lodestone/simplify/fit/tracked_level.h"
 
 namespace lodestone::simplify {
 
@@ -22,9 +22,10 @@ struct SplitResult {
 /// triangle, or on its side where the place is near one. Where it is a vertex, as of those that stick out of bulges,
 /// that goes half way to the original. Attributes are those of the level at the place. O(n log n).
 /// Open borders are split and pulled, too, unless they are to be kept. No face may turn by more than some 70 degrees,
-/// and no vertex is pulled that `stays` (one a vertex, non-zero = stays; empty = none) or lies on a seam or between
-/// materials. Triangles that have a vertex that is `whole` (as `stays`) are not split.
-SplitResult split_worst(const FittedLevel& level, double share, std::size_t most, bool keep_borders,
-                        std::span<const std::uint8_t> stays, std::span<const std::uint8_t> whole, const Task& task);
+/// and no vertex is pulled that is `no_move` (one a vertex, non-zero = does not move; empty = none) or lies on a seam or between
+/// materials. Triangles that have a vertex that is `no_split` (as `no_move`) are not split.
+SplitResult split_worst(const TrackedLevel& level, double share, std::size_t most, bool keep_borders,
+                        std::span<const std::uint8_t> no_move, std::span<const std::uint8_t> no_split,
+                        const Task& task);
 
 }  // namespace lodestone::simplify

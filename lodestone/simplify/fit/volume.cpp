@@ -30,7 +30,7 @@ double volume_of(const spatial::Surface& surface, Vec3d middle) {
 }  // namespace
 
 std::vector<Vec3d> volume_moves(const spatial::Surface& original, const spatial::Surface& level,
-                                std::span<const std::uint8_t> held) {
+                                std::span<const std::uint8_t> no_move) {
   if (!is_closed(original) || !is_closed(level)) return {};
   const Vec3d middle = (original.bounds.min + original.bounds.max) / 2.0;
   const double missing = volume_of(original, middle) - volume_of(level, middle);
@@ -38,7 +38,7 @@ std::vector<Vec3d> volume_moves(const spatial::Surface& original, const spatial:
   for (std::size_t t = 0; t < level.triangles.size(); ++t) {
     const auto [a, b, c] = level.corners(t);
     for (const std::uint32_t v : level.triangles[t]) {
-      if (held[v] == 0) gradient[v] += scaled_normal(a, b, c) / 6.0;
+      if (no_move[v] == 0) gradient[v] += scaled_normal(a, b, c) / 6.0;
     }
   }
   double sum = 0;

@@ -10,9 +10,9 @@
 
 namespace lodestone::simplify::detail {
 
-/// Moves along the normals, as far for each vertex that is not held, after which a level has the volume of the original
+/// Moves along the normals, as far for each vertex that may move, after which a level has the volume of the original
 /// (to first order). Empty unless both are closed. O(n log n).
 std::vector<Vec3d> volume_moves(const spatial::Surface& original, const spatial::Surface& level,
-                                std::span<const std::uint8_t> held);
+                                std::span<const std::uint8_t> no_move);
 
 }  // namespace lodestone::simplify::detail

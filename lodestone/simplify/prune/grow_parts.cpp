@@ -70,13 +70,13 @@ Enlarging enlarging(const PartShape& shape, double step, const Mat4d& metric) {
 // The move of each part's fastest end. What a shape foretells is a lower bound of the area, so where parts are round
 // it is too much: two corrections by the area that they really get bring it within a hundredth, as a rule.
 std::vector<double> steps_for(const Mesh& mesh, const std::vector<std::uint32_t>& part_of,
-                              const std::vector<PartMeasure>& measures, const std::vector<std::uint8_t>& stays,
+                              const std::vector<PartMeasure>& measures, const std::vector<std::uint8_t>& no_prune,
                               const std::vector<double>& area_of_part, double most, const Mat4d& metric) {
   const std::size_t parts = measures.size();
   std::vector<double> steps(parts, 0);
   for (std::size_t p = 0; p < parts; ++p) {
     const PartShape& shape = measures[p].shape();
-    const bool grows = stays[p] == 0 && area_of_part[p] > kSame * shape.area;
+    const bool grows = no_prune[p] == 0 && area_of_part[p] > kSame * shape.area;
     if (grows && shape.growth_for(area_of_part[p]) <= 2 * most) steps[p] = shape.step_for(area_of_part[p]);
   }
   for (int round = 0; round < 2; ++round) {
@@ -120,12 +120,12 @@ void change_stream(AttributeStream& stream, const Mesh& mesh, const std::vector<
 
 }  // namespace
 
-void grow_parts(const Mesh& original, const ThinParts& thin, const std::vector<double>& area_of_part, double most,
+void grow_parts(const Mesh& original, const PruneOrder& thin, const std::vector<double>& area_of_part, double most,
                 const Mat4d& metric, const std::vector<std::uint32_t>& origin, Mesh& mesh) {
   if (metric.determinant3() == 0) return;  // drawn flat: there is no way back from there
   const std::vector<std::uint32_t> part_of = parts_of_vertices(original, thin.parts, origin, mesh);
   const std::vector<PartMeasure> measures = measure(mesh, part_of, thin.parts.count, metric);
-  const std::vector<double> steps = steps_for(mesh, part_of, measures, thin.stays, area_of_part, most, metric);
+  const std::vector<double> steps = steps_for(mesh, part_of, measures, thin.no_prune, area_of_part, most, metric);
   std::vector<Enlarging> enlargings(thin.parts.count);
   for (std::size_t p = 0; p < enlargings.size(); ++p) enlargings[p] = enlarging(measures[p].shape(), steps[p], metric);
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {

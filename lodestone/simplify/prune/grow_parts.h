@@ -6,17 +6,17 @@
 
 #include "lodestone/core/mesh.h"
 #include "lodestone/math/mat.h"
-#include "lodestone/simplify/prune/thin_parts.h"
+#include "lodestone/simplify/prune/prune_order.h"
 
 namespace lodestone::simplify {
 
 /// Enlarges the parts of `mesh`, a level of `original`, about their centroids until each has the area that it stands
 /// for, `area_of_part` (units of the metric squared), or a little more where a part is round. A leaf grows in its
 /// plane, a strut across: vertices move as little as they can, and none farther than `most` (units of the metric). A
-/// part that would have to move more than twice as far is left as it is, as are those that stay (ThinParts::stays).
+/// part that would have to move more than twice as far is left as it is, as are those that stay (PruneOrder::stays).
 /// Normals, tangents and morph targets go along. `origin`: for each triangle the original's that it comes from.
 /// O(mesh).
-void grow_parts(const Mesh& original, const ThinParts& thin, const std::vector<double>& area_of_part, double most,
+void grow_parts(const Mesh& original, const PruneOrder& thin, const std::vector<double>& area_of_part, double most,
                 const Mat4d& metric, const std::vector<std::uint32_t>& origin, Mesh& mesh);
 
 }  // namespace lodestone::simplify

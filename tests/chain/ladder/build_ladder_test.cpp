@@ -72,7 +72,7 @@ TEST(BuildLadder, what_cannot_shrink_further_ends_early_and_says_why) {
   EXPECT_FALSE(r.shortfalls.empty());
   EXPECT_LT(r.ladder.levels.size(), 5U);
   LadderOptions options = quick();
-  options.influence.keep_border = true;
+  options.constraints.keep_border = true;
   const LadderResult bordered = built(test::grid(8), options);
   ASSERT_FALSE(bordered.shortfalls.empty());
   EXPECT_NE(bordered.shortfalls[0].reason.find("--keep-border"), std::string::npos) << bordered.shortfalls[0].reason;
@@ -180,7 +180,7 @@ TEST(SimplifyModel, welding_by_tolerance_lets_cracked_sheets_collapse_together) 
   const auto apart = simplify_model(make_model(cracked), options);
   ASSERT_TRUE(apart);
   EXPECT_FALSE(apart->shortfall.empty());
-  options.influence.weld_tolerance = 1e-3;
+  options.constraints.weld_tolerance = 1e-3;
   const auto joined = simplify_model(make_model(cracked), options);
   ASSERT_TRUE(joined);
   EXPECT_TRUE(joined->shortfall.empty()) << joined->shortfall;

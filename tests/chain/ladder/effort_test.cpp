@@ -7,7 +7,7 @@
 
 #include "lodestone/chain/ladder/build_ladder.h"
 #include "lodestone/core/topology.h"
-#include "lodestone/spatial/crossings.h"
+#include "lodestone/spatial/self_intersections.h"
 #include "support/shapes.h"
 
 namespace lodestone::chain {
@@ -75,7 +75,7 @@ TEST(Effort, needs_fewer_triangles_for_an_error) {
 TEST(Effort, locks_do_not_stop_it) {
   SimplifyModelOptions options;
   options.max_error = 0.01;
-  options.influence.spheres.push_back({{0, 0, 1}, 0.1, 1, true});
+  options.constraints.spheres.push_back({{0, 0, 1}, 0.1, 1, true});
   const Model model = bumpy(36);
   const SimplifyModelResult fast = simplified(model, options, Effort::fast);
   const SimplifyModelResult best = simplified(model, options, Effort::best);
@@ -117,8 +117,8 @@ TEST(Effort, has_the_same_bytes_for_any_thread_count) {
 TEST(Effort, keeps_locked_vertices_and_borders) {
   Model model = make_model(test::grid(40, 0.1F));
   SimplifyModelOptions options = to_triangles(400);
-  options.influence.keep_border = true;
-  options.influence.spheres.push_back({{0.5, 0.5, 0}, 0.2, 1, true});
+  options.constraints.keep_border = true;
+  options.constraints.spheres.push_back({{0.5, 0.5, 0}, 0.2, 1, true});
   const SimplifyModelResult best = simplified(model, options, Effort::best);
   const Mesh& mesh = best.level.model.meshes.front();
   std::size_t border = 0, locked = 0;
@@ -212,7 +212,7 @@ TEST(Effort, adds_no_crossings) {
         EXPECT_EQ(made.level.method == "edge collapse", effort == Effort::fast);
       }
       const spatial::Surface surface = *spatial::flatten(made.level.model, {});
-      return spatial::crossings(spatial::Bvh(surface), {}, {}).size();
+      return spatial::self_intersections(spatial::Bvh(surface), {}, {}).size();
     };
     EXPECT_LE(crossings_of(Effort::best), crossings_of(Effort::fast)) << inner;
   }

@@ -57,9 +57,9 @@ Mesh shaded(Mesh mesh) {
 TEST(Only, all_other_triangles_stay_to_the_bit) {
   const Mesh mesh = test::with_uv_seam(shaded(test::grid(30, 0.1F)));
   SimplifyModelOptions options = quick(1000);
-  options.influence.only = {{0, 299}, {700, 1399}};
+  options.constraints.only = {{0, 299}, {700, 1399}};
   for (const bool keep_area : {false, true}) {
-    options.influence.keep_area = keep_area;
+    options.constraints.keep_area = keep_area;
     const auto r = simplify_model(make_model(mesh), options);
     ASSERT_TRUE(r);
     EXPECT_LE(r->level.triangles, 1000U) << r->shortfall;
@@ -78,7 +78,7 @@ TEST(Only, doubled_and_degenerate_triangles_outside_the_list_stay_too) {
   mesh.triangles.push_back(mesh.triangles[150]);
   mesh.triangles.push_back({3, 3, 4});
   SimplifyModelOptions options = quick(150);
-  options.influence.only = {{0, 99}};
+  options.constraints.only = {{0, 99}};
   const auto r = simplify_model(make_model(mesh), options);
   ASSERT_TRUE(r);
   const Mesh& after = r->level.model.meshes[0];
@@ -95,8 +95,8 @@ TEST(Only, welding_and_joining_leave_the_others_where_they_are) {
   for (const Triangle& t : more.triangles) mesh.triangles.push_back({t[0] + 121, t[1] + 121, t[2] + 121});
   for (const bool join : {false, true}) {
     SimplifyModelOptions options = quick(260);
-    options.influence.only = {{0, 199}};
-    (join ? options.influence.join_length : options.influence.weld_tolerance) = 0.002;
+    options.constraints.only = {{0, 199}};
+    (join ? options.constraints.join_length : options.constraints.weld_tolerance) = 0.002;
     const auto r = simplify_model(make_model(mesh), options);
     ASSERT_TRUE(r);
     const Mesh& after = r->level.model.meshes[0];
@@ -121,7 +121,7 @@ TEST(Join, neighbouring_pieces_collapse_as_one) {
   const auto apart = simplify_model(make_model(mesh), options);
   ASSERT_TRUE(apart);
   EXPECT_FALSE(apart->shortfall.empty());
-  options.influence.join_length = 0.01;
+  options.constraints.join_length = 0.01;
   const auto r = simplify_model(make_model(mesh), options);
   ASSERT_TRUE(r);
   EXPECT_TRUE(r->shortfall.empty()) << r->shortfall;

@@ -225,8 +225,8 @@ TEST(EdgeCollapse, borders_and_requests_hold) {
   EXPECT_EQ(out.locked.border, 64U);
   EdgeCollapseOptions options;
   options.target_triangles = 10;
-  options.locked.assign(in.vertex_count(), 0);
-  options.locked[100] = 1;
+  options.no_move.assign(in.vertex_count(), 0);
+  options.no_move[100] = 1;
   const auto locked = collapse_edges(in, options);
   ASSERT_TRUE(locked);
   EXPECT_EQ(std::count(locked->mesh.positions.begin(), locked->mesh.positions.end(), in.positions[100]), 1);
@@ -361,9 +361,9 @@ TEST(EdgeCollapse, bad_arguments_and_cancelling) {
   EXPECT_EQ(collapse_edges(in, {}).error().code, ErrorCode::bad_argument);
   EdgeCollapseOptions options;
   options.target_triangles = 10;
-  options.locked = {1, 2};
+  options.no_move = {1, 2};
   EXPECT_EQ(collapse_edges(in, options).error().code, ErrorCode::bad_argument);
-  options.locked.clear();
+  options.no_move.clear();
   const Task task = Task::root({});
   task.cancel();
   EXPECT_EQ(collapse_edges(in, options, task).error().code, ErrorCode::cancelled);

@@ -19,9 +19,9 @@ struct Grown {
 
 // A mesh of one part, grown to `times` its area.
 Grown grown(const Mesh& mesh, double times, double most, const Mat4d& metric = {}) {
-  ThinPartsOptions options;
+  PruneOptions options;
   options.metric = metric;
-  const ThinParts thin = *thin_parts(mesh, options);
+  const PruneOrder thin = *prune_order(mesh, options);
   std::vector<double> area = thin.area;
   for (double& a : area) a *= times;
   std::vector<std::uint32_t> origin(mesh.triangles.size());

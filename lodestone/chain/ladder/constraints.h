@@ -13,11 +13,11 @@
 namespace lodestone::chain {
 
 /// A ball in world space (default scene) in which vertices weigh `weight`, or stay where they are.
-struct InfluenceSphere {
+struct ConstraintSphere {
   Vec3d center;
   double radius = 0;  ///< model units
   double weight = 1;  ///< 0 or more; of several spheres the largest counts
-  bool locked = false;
+  bool no_move = false;
 };
 
 /// Numbers of triangles, first and last included.
@@ -32,8 +32,8 @@ enum class Tangents {
   dropped,       ///< none: viewers make their own
 };
 
-struct Influence {
-  std::vector<InfluenceSphere> spheres;
+struct SimplifyConstraints {
+  std::vector<ConstraintSphere> spheres;
   std::string weight_attribute;  ///< name of a stream of one component whose values are weights; empty = none
   bool keep_border = false;      ///< open borders stay as they are
   double weld_tolerance = 0;  ///< model units: vertices nearer than this are one in coarser levels; 0 = only equal ones
@@ -53,24 +53,25 @@ struct Influence {
 };
 
 /// What edge collapse is told of one mesh, one entry a vertex; empty where nothing is to be told.
-struct VertexInfluence {
+struct VertexConstraints {
   std::vector<float> weights;
-  std::vector<std::uint8_t> locked;
+  std::vector<std::uint8_t> no_move;
 };
 
 /// One entry a mesh. A vertex is in a sphere when any instance places it there. Outside all spheres, and in meshes
 /// without the attribute, the weight is 1. Errors: bad_argument (no mesh has the attribute; a value is negative; those
 /// of untouched_triangles() and validate()).
-Result<std::vector<VertexInfluence>> vertex_influences(const Model& model, const Influence& influence);
+Result<std::vector<VertexConstraints>> vertex_constraints(const Model& model, const SimplifyConstraints& constraints);
 
-/// The triangles of each mesh that `influence.only` doesn't name, non-zero = must not change; empty when it names none.
+/// The triangles of each mesh that `constraints.only` doesn't name, non-zero = must not change; empty when it names none.
 /// Errors: bad_argument (a number past the last triangle, a range that falls).
-Result<std::vector<std::vector<std::uint8_t>>> untouched_triangles(const Model& model, const Influence& influence);
+Result<std::vector<std::vector<std::uint8_t>>> untouched_triangles(const Model& model,
+                                                                   const SimplifyConstraints& constraints);
 
 /// Non-zero for the vertices of marked triangles; empty when `marked` is.
 std::vector<std::uint8_t> vertices_of_triangles(const Mesh& mesh, const std::vector<std::uint8_t>& marked);
 
 /// Numbers of the spheres that hold no vertex that is drawn, ascending: a slip of the keyboard, as a rule.
-std::vector<std::size_t> empty_spheres(const Model& model, const std::vector<InfluenceSphere>& spheres);
+std::vector<std::size_t> empty_spheres(const Model& model, const std::vector<ConstraintSphere>& spheres);
 
 }  // namespace lodestone::chain

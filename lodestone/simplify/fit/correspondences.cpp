@@ -8,7 +8,7 @@
 #include "lodestone/base/random.h"
 #include "lodestone/math/box.h"
 #include "lodestone/math/triangle.h"
-#include "lodestone/simplify/fit/ties_detail.h"
+#include "lodestone/simplify/fit/correspondences_detail.h"
 #include "lodestone/spatial/closest_batch.h"
 
 namespace lodestone::simplify::detail {
@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t kChunk = 4096;
 
-Tie tie_at(const spatial::Surface& level, std::uint32_t triangle, Vec3d on_level, float weight, Vec3d partner) {
+Correspondence correspondence_at(const spatial::Surface& level, std::uint32_t triangle, Vec3d on_level, float weight,
+                                 Vec3d partner) {
   const auto [a, b, c] = level.corners(triangle);
   const std::array<double, 3> w = barycentric(on_level, a, b, c);
   return {triangle, static_cast<float>(w[1]), static_cast<float>(w[2]), weight, partner};
@@ -30,16 +31,17 @@ std::size_t stride_for(std::size_t points, std::size_t triangles) {
 
 // From points of the original to the level, every `stride`-th.
 void tie_points(const FitTarget& target, const spatial::Surface& level, const spatial::Bvh& tree, std::size_t stride,
-                std::span<Tie> ties, const Task& task) {
+                std::span<Correspondence> correspondences, const Task& task) {
   const auto factor = static_cast<float>(stride);
-  parallel_for(ties.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
+  parallel_for(correspondences.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<Vec3d> points;
     for (std::size_t i = begin; i < end; ++i) points.push_back(target.points()[i * stride]);
     std::vector<spatial::Nearest> closest(end - begin);
     spatial::ClosestBatch(tree).find(points, closest);
     for (std::size_t i = begin; i < end; ++i) {
       const spatial::Nearest& near = closest[i - begin];
-      ties[i] = tie_at(level, near.triangle, near.point, factor * target.weights()[i * stride], points[i - begin]);
+      correspondences[i] =
+          correspondence_at(level, near.triangle, near.point, factor * target.weights()[i * stride], points[i - begin]);
     }
   });
 }
@@ -54,7 +56,7 @@ double area_of(const spatial::Surface& level) {
 }
 
 // The k-th point of a triangle of the level, without a partner. `area`: of the level.
-Tie level_tie(std::size_t t, const std::array<Vec3d, 3>& corners, std::size_t k, double area) {
+Correspondence level_correspondence(std::size_t t, const std::array<Vec3d, 3>& corners, std::size_t k, double area) {
   const double own = length(scaled_normal(corners[0], corners[1], corners[2])) / 2;
   return {static_cast<std::uint32_t>(t),
           kInner[k][0],
@@ -64,22 +66,24 @@ Tie level_tie(std::size_t t, const std::array<Vec3d, 3>& corners, std::size_t k,
 }
 
 // A point of the original goes to the nearer of two triangles.
-void tie_nearer(const TrianglePair& pair, const std::array<std::array<Vec3d, 3>, 2>& corners, Tie& tie) {
+void join_nearer(const TrianglePair& pair, const std::array<std::array<Vec3d, 3>, 2>& corners,
+                 Correspondence& correspondence) {
   ClosestPoint best{{}, std::numeric_limits<double>::infinity()};
   for (std::size_t side = 0; side < 2; ++side) {
     const auto& [a, b, c] = corners[side];
-    const ClosestPoint found = closest_point(tie.partner, a, b, c);
+    const ClosestPoint found = closest_point(correspondence.partner, a, b, c);
     if (!(found.distance_sq < best.distance_sq)) continue;
     best = found;
     const std::array<double, 3> w = barycentric(found.point, a, b, c);
-    tie.triangle = pair[side];
-    tie.second = static_cast<float>(w[1]);
-    tie.third = static_cast<float>(w[2]);
+    correspondence.triangle = pair[side];
+    correspondence.second = static_cast<float>(w[1]);
+    correspondence.third = static_cast<float>(w[2]);
   }
 }
 
 // From points of the level to the original: inner points of each triangle, and its corners.
-void tie_level(const FitTarget& target, const spatial::Surface& level, std::span<Tie> ties, const Task& task) {
+void tie_level(const FitTarget& target, const spatial::Surface& level, std::span<Correspondence> correspondences,
+               const Task& task) {
   const double area = area_of(level);
   constexpr std::size_t kEach = std::size(kInner);
   parallel_for(level.triangles.size(), kChunk / kEach, task, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -88,37 +92,38 @@ void tie_level(const FitTarget& target, const spatial::Surface& level, std::span
     for (std::size_t t = begin; t < end; ++t) {
       const std::array<Vec3d, 3> corners = level.corners(t);
       for (std::size_t k = 0; k < kEach; ++k) {
-        Tie& tie = ties[t * kEach + k];
-        tie = level_tie(t, corners, k, area);
-        points.push_back(tie.on(corners));
+        Correspondence& correspondence = correspondences[t * kEach + k];
+        correspondence = level_correspondence(t, corners, k, area);
+        points.push_back(correspondence.on(corners));
       }
     }
     spatial::ClosestBatch(target.tree()).find(points, closest);
-    for (std::size_t i = 0; i < points.size(); ++i) ties[begin * kEach + i].partner = closest[i].point;
+    for (std::size_t i = 0; i < points.size(); ++i) correspondences[begin * kEach + i].partner = closest[i].point;
   });
 }
 
-void sort_by_triangle(Ties& ties, std::vector<Tie> loose, std::size_t triangles) {
-  ties.first.assign(triangles + 1, 0);
-  for (const Tie& tie : loose) ++ties.first[tie.triangle];
-  exclusive_scan(ties.first);
-  std::vector<std::uint32_t> next(ties.first.begin(), ties.first.end() - 1);
-  ties.list.resize(loose.size());
-  for (const Tie& tie : loose) ties.list[next[tie.triangle]++] = tie;
+void sort_by_triangle(Correspondences& correspondences, std::vector<Correspondence> loose, std::size_t triangles) {
+  correspondences.first.assign(triangles + 1, 0);
+  for (const Correspondence& correspondence : loose) ++correspondences.first[correspondence.triangle];
+  exclusive_scan(correspondences.first);
+  std::vector<std::uint32_t> next(correspondences.first.begin(), correspondences.first.end() - 1);
+  correspondences.list.resize(loose.size());
+  for (const Correspondence& correspondence : loose)
+    correspondences.list[next[correspondence.triangle]++] = correspondence;
 }
 
-void raise(Worst& worst, const Worst& other) {
+void raise(TriangleError& worst, const TriangleError& other) {
   if (other.distance > worst.distance) worst = other;
 }
 
 // Distances of the level's vertices, those that are not known; told to all triangles around them.
-void look_at_corners(const FitTarget& target, const spatial::Surface& level, const std::vector<std::uint8_t>& is_known,
-                     Ties& ties, const Task& task) {
+void probe_corners(const FitTarget& target, const spatial::Surface& level, const std::vector<std::uint8_t>& is_known,
+                   Correspondences& correspondences, const Task& task) {
   std::vector<std::uint32_t> wanted;
   for (std::uint32_t v = 0; v < level.positions.size(); ++v) {
     if (is_known.empty() || is_known[v] == 0) wanted.push_back(v);
   }
-  ties.corner.resize(level.positions.size());
+  correspondences.corner.resize(level.positions.size());
   parallel_for(wanted.size(), kChunk, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<Vec3d> points;
     for (std::size_t i = begin; i < end; ++i) points.push_back(level.positions[wanted[i]]);
@@ -126,21 +131,21 @@ void look_at_corners(const FitTarget& target, const spatial::Surface& level, con
     spatial::ClosestBatch(target.tree()).find(points, closest);
     for (std::size_t i = begin; i < end; ++i) {
       const spatial::Nearest& near = closest[i - begin];
-      ties.corner[wanted[i]] = {static_cast<float>(std::sqrt(near.distance_sq)), 0, 0, near.point};
+      correspondences.corner[wanted[i]] = {static_cast<float>(std::sqrt(near.distance_sq)), 0, 0, near.point};
     }
   });
   for (std::size_t t = 0; t < level.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
-      Worst worst = ties.corner[level.triangles[t][k]];
+      TriangleError worst = correspondences.corner[level.triangles[t][k]];
       worst.second = k == 1 ? 1.0F : 0.0F;
       worst.third = k == 2 ? 1.0F : 0.0F;
-      raise(ties.worst[t], worst);
+      raise(correspondences.worst[t], worst);
     }
   }
 }
 
-void add_up(const spatial::Surface& level, Ties& ties, const Task& task) {
-  ties.worst.assign(level.triangles.size(), {});
+void add_up(const spatial::Surface& level, Correspondences& correspondences, const Task& task) {
+  correspondences.worst.assign(level.triangles.size(), {});
   struct Sum {
     double mean = 0, energy = 0;
   };
@@ -152,10 +157,10 @@ void add_up(const spatial::Surface& level, Ties& ties, const Task& task) {
           const std::array<Vec3d, 3> corners = level.corners(t);
           double worst_sq = -1;
           std::uint32_t worst = 0;
-          for (std::uint32_t i = ties.first[t]; i < ties.first[t + 1]; ++i) {
-            const Tie& tie = ties.list[i];
-            const double d_sq = length_sq(tie.partner - tie.on(corners));
-            const double w = static_cast<double>(tie.weight);
+          for (std::uint32_t i = correspondences.first[t]; i < correspondences.first[t + 1]; ++i) {
+            const Correspondence& correspondence = correspondences.list[i];
+            const double d_sq = length_sq(correspondence.partner - correspondence.on(corners));
+            const double w = static_cast<double>(correspondence.weight);
             part.mean += w * std::sqrt(d_sq);
             part.energy += w * d_sq;
             if (d_sq > worst_sq) {
@@ -164,16 +169,17 @@ void add_up(const spatial::Surface& level, Ties& ties, const Task& task) {
             }
           }
           if (worst_sq < 0) continue;
-          const Tie& tie = ties.list[worst];
-          ties.worst[t] = {static_cast<float>(std::sqrt(worst_sq)), tie.second, tie.third, tie.partner};
+          const Correspondence& correspondence = correspondences.list[worst];
+          correspondences.worst[t] = {static_cast<float>(std::sqrt(worst_sq)), correspondence.second,
+                                      correspondence.third, correspondence.partner};
         }
         return part;
       },
       [](Sum a, Sum b) {
         return Sum{a.mean + b.mean, a.energy + b.energy};
       });
-  ties.mean = sum.mean / 2;
-  ties.energy = sum.energy;
+  correspondences.mean = sum.mean / 2;
+  correspondences.energy = sum.energy;
 }
 
 // For each triangle, the one of the other surface with the same corners in the same order; kNone where there is none.
@@ -259,53 +265,56 @@ class NearMask {
 
 // As tie_points(): a point keeps its partner where that is there still, unless a new triangle is nearer.
 void keep_points(const spatial::Surface& level, const spatial::Bvh& tree, const spatial::Surface& fresh,
-                 const std::vector<std::uint32_t>& new_of, const Known& known, std::span<Tie> ties, const Task& task) {
+                 const std::vector<std::uint32_t>& new_of, const Known& known,
+                 std::span<Correspondence> correspondences, const Task& task) {
   constexpr std::size_t kEach = std::size(kInner);
   const std::optional<spatial::Bvh> fresh_tree =
       fresh.triangles.empty() ? std::nullopt : std::make_optional<spatial::Bvh>(fresh);
-  const NearMask mask(fresh, known.ties.max);
+  const NearMask mask(fresh, known.correspondences.max);
   parallel_for(new_of.size(), kChunk / 8, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<spatial::Nearest> near;
-    std::vector<std::uint32_t> lost;  // ties whose triangle is there no more
+    std::vector<std::uint32_t> lost;  // correspondences whose triangle is there no more
     for (std::size_t old = begin; old < end; ++old) {
-      // Ties of the original's points before this triangle: all ties less the level's.
-      const std::uint32_t first = known.ties.first[old], last = known.ties.first[old + 1] - std::uint32_t{kEach};
+      // Correspondences of the original's points before this triangle: all correspondences less the level's.
+      const std::uint32_t first = known.correspondences.first[old],
+                          last = known.correspondences.first[old + 1] - std::uint32_t{kEach};
       for (std::uint32_t i = first; i < last; ++i) {
         const auto at = static_cast<std::uint32_t>(i - old * kEach);
-        Tie& tie = ties[at];
-        tie = known.ties.list[i];
-        const Vec3d p = tie.partner;
+        Correspondence& correspondence = correspondences[at];
+        correspondence = known.correspondences.list[i];
+        const Vec3d p = correspondence.partner;
         if (new_of[old] == kNone) {
           lost.push_back(at);
           continue;
         }
-        tie.triangle = new_of[old];
+        correspondence.triangle = new_of[old];
         if (!fresh_tree) continue;
-        double best_sq = length_sq(p - tie.on(level.corners(tie.triangle)));
+        double best_sq = length_sq(p - correspondence.on(level.corners(correspondence.triangle)));
         if (!(best_sq > 0) || !mask.maybe_near(p)) continue;
         near.clear();
         fresh_tree->all_within(p, std::sqrt(best_sq), near);
         for (const spatial::Nearest& n : near) {
           if (!(n.distance_sq < best_sq)) continue;
           best_sq = n.distance_sq;
-          tie = tie_at(level, fresh.drawn[n.triangle], n.point, tie.weight, p);
+          correspondence = correspondence_at(level, fresh.drawn[n.triangle], n.point, correspondence.weight, p);
         }
       }
     }
     std::vector<Vec3d> points;
-    for (const std::uint32_t at : lost) points.push_back(ties[at].partner);
+    for (const std::uint32_t at : lost) points.push_back(correspondences[at].partner);
     std::vector<spatial::Nearest> closest(points.size());
     spatial::ClosestBatch(tree).find(points, closest);
     for (std::size_t i = 0; i < lost.size(); ++i) {
-      Tie& tie = ties[lost[i]];
-      tie = tie_at(level, closest[i].triangle, closest[i].point, tie.weight, points[i]);
+      Correspondence& correspondence = correspondences[lost[i]];
+      correspondence =
+          correspondence_at(level, closest[i].triangle, closest[i].point, correspondence.weight, points[i]);
     }
   });
 }
 
 // As tie_level() for the new triangles alone.
 void keep_level(const FitTarget& target, const spatial::Surface& level, const std::vector<std::uint32_t>& old_of,
-                const Known& known, std::span<Tie> ties, const Task& task) {
+                const Known& known, std::span<Correspondence> correspondences, const Task& task) {
   const double area = area_of(level);
   constexpr std::size_t kEach = std::size(kInner);
   parallel_for(level.triangles.size(), kChunk / 8, task, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -314,37 +323,41 @@ void keep_level(const FitTarget& target, const spatial::Surface& level, const st
     for (std::size_t t = begin; t < end; ++t) {
       const std::array<Vec3d, 3> corners = level.corners(t);
       for (std::size_t k = 0; k < kEach; ++k) {
-        Tie& tie = ties[t * kEach + k];
-        tie = level_tie(t, corners, k, area);
+        Correspondence& correspondence = correspondences[t * kEach + k];
+        correspondence = level_correspondence(t, corners, k, area);
         if (old_of[t] != kNone) {
-          tie.partner = known.ties.list[known.ties.first[old_of[t] + 1] - kEach + k].partner;
+          correspondence.partner =
+              known.correspondences.list[known.correspondences.first[old_of[t] + 1] - kEach + k].partner;
           continue;
         }
         wanted.push_back(t * kEach + k);
-        points.push_back(tie.on(corners));
+        points.push_back(correspondence.on(corners));
       }
     }
     std::vector<spatial::Nearest> closest(points.size());
     spatial::ClosestBatch(target.tree()).find(points, closest);
-    for (std::size_t i = 0; i < wanted.size(); ++i) ties[wanted[i]].partner = closest[i].point;
+    for (std::size_t i = 0; i < wanted.size(); ++i) correspondences[wanted[i]].partner = closest[i].point;
   });
 }
 
 }  // namespace
 
-Ties make_ties(const FitTarget& target, const spatial::Surface& level, const Task& task, const Known* known) {
-  Ties ties;
+Correspondences find_correspondences(const FitTarget& target, const spatial::Surface& level, const Task& task,
+                                     const Known* known) {
+  Correspondences correspondences;
   const std::size_t triangles = level.triangles.size(), all = target.points().size();
-  if (triangles == 0 || all == 0) return ties;
-  const bool updates = known != nullptr && !known->ties.list.empty();
+  if (triangles == 0 || all == 0) return correspondences;
+  const bool updates = known != nullptr && !known->correspondences.list.empty();
   const std::size_t stride = stride_for(all, triangles);
-  const std::size_t points = updates ? known->ties.list.size() - known->level.triangles.size() * std::size(kInner)
-                                     : (all + stride - 1) / stride;
+  const std::size_t points =
+      updates ? known->correspondences.list.size() - known->level.triangles.size() * std::size(kInner)
+              : (all + stride - 1) / stride;
   const spatial::Bvh tree(level, task);
-  std::vector<Tie> loose(points + triangles * std::size(kInner));
-  const std::span<Tie> of_points = std::span(loose).first(points), of_level = std::span(loose).subspan(points);
-  ties.close.assign(triangles, {});
-  ties.corner.assign(level.positions.size(), {});
+  std::vector<Correspondence> loose(points + triangles * std::size(kInner));
+  const std::span<Correspondence> of_points = std::span(loose).first(points),
+                                  of_level = std::span(loose).subspan(points);
+  correspondences.close.assign(triangles, {});
+  correspondences.corner.assign(level.positions.size(), {});
   std::vector<std::uint8_t> corner_known;
   if (updates) {
     const std::vector<std::uint32_t> old_of = same_triangles(level, known->level);
@@ -353,10 +366,10 @@ Ties make_ties(const FitTarget& target, const spatial::Surface& level, const Tas
     for (std::uint32_t t = 0; t < triangles; ++t) {
       if (old_of[t] == kNone) continue;
       new_of[old_of[t]] = t;
-      ties.close[t] = known->ties.close[old_of[t]];
+      correspondences.close[t] = known->correspondences.close[old_of[t]];
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t v = level.triangles[t][k];
-        ties.corner[v] = known->ties.corner[known->level.triangles[old_of[t]][k]];
+        correspondences.corner[v] = known->correspondences.corner[known->level.triangles[old_of[t]][k]];
         corner_known[v] = 1;
       }
     }
@@ -366,18 +379,19 @@ Ties make_ties(const FitTarget& target, const spatial::Surface& level, const Tas
     tie_points(target, level, tree, stride, of_points, task);
     tie_level(target, level, of_level, task);
   }
-  sort_by_triangle(ties, std::move(loose), triangles);
-  add_up(level, ties, task);
-  look_at_corners(target, level, corner_known, ties, task);
+  sort_by_triangle(correspondences, std::move(loose), triangles);
+  add_up(level, correspondences, task);
+  probe_corners(target, level, corner_known, correspondences, task);
   for (std::size_t t = 0; t < triangles; ++t) {
-    raise(ties.worst[t], ties.close[t]);
-    ties.max = std::max(ties.max, static_cast<double>(ties.worst[t].distance));
+    raise(correspondences.worst[t], correspondences.close[t]);
+    correspondences.max = std::max(correspondences.max, static_cast<double>(correspondences.worst[t].distance));
   }
-  return ties;
+  return correspondences;
 }
 
-void retie(const FitTarget& target, const spatial::Surface& level, const std::vector<TrianglePair>& changed, Ties& ties,
-           const Task& task) {
+void update_correspondences(const FitTarget& target, const spatial::Surface& level,
+                            const std::vector<TrianglePair>& changed, Correspondences& correspondences,
+                            const Task& task) {
   if (changed.empty()) return;
   constexpr std::size_t kEach = std::size(kInner);
   const double area = area_of(level);
@@ -386,42 +400,46 @@ void retie(const FitTarget& target, const spatial::Surface& level, const std::ve
       const std::array<std::array<Vec3d, 3>, 2> corners{level.corners(changed[i][0]), level.corners(changed[i][1])};
       std::uint32_t hint = kNone;
       for (std::size_t side = 0; side < 2; ++side) {
-        const std::uint32_t t = changed[i][side], last = ties.first[t + 1];
-        for (std::uint32_t k = ties.first[t]; k + kEach < last; ++k) tie_nearer(changed[i], corners, ties.list[k]);
+        const std::uint32_t t = changed[i][side], last = correspondences.first[t + 1];
+        for (std::uint32_t k = correspondences.first[t]; k + kEach < last; ++k)
+          join_nearer(changed[i], corners, correspondences.list[k]);
         for (std::size_t k = 0; k < kEach; ++k) {
-          Tie& tie = ties.list[last - kEach + k];
-          tie = level_tie(t, corners[side], k, area);
-          const spatial::Nearest near = target.tree().closest(tie.on(corners[side]), hint);
+          Correspondence& correspondence = correspondences.list[last - kEach + k];
+          correspondence = level_correspondence(t, corners[side], k, area);
+          const spatial::Nearest near = target.tree().closest(correspondence.on(corners[side]), hint);
           hint = near.triangle;
-          tie.partner = near.point;
+          correspondence.partner = near.point;
         }
       }
     }
   });
   // The points of the level stay the last of each triangle: those of the original come first, in the order that was.
-  std::vector<Tie> loose;
-  loose.reserve(ties.list.size());
+  std::vector<Correspondence> loose;
+  loose.reserve(correspondences.list.size());
   for (const bool own : {false, true}) {
     for (std::size_t t = 0; t < level.triangles.size(); ++t) {
-      const std::uint32_t begin = ties.first[t], end = ties.first[t + 1], middle = end - std::uint32_t{kEach};
-      const auto part = std::span(ties.list).subspan(own ? middle : begin, own ? kEach : middle - begin);
+      const std::uint32_t begin = correspondences.first[t], end = correspondences.first[t + 1],
+                          middle = end - std::uint32_t{kEach};
+      const auto part = std::span(correspondences.list).subspan(own ? middle : begin, own ? kEach : middle - begin);
       loose.insert(loose.end(), part.begin(), part.end());
     }
   }
-  sort_by_triangle(ties, std::move(loose), level.triangles.size());
-  add_up(level, ties, task);
+  sort_by_triangle(correspondences, std::move(loose), level.triangles.size());
+  add_up(level, correspondences, task);
 }
 
-void look_at_worst(const FitTarget& target, const spatial::Surface& level, double share, Ties& ties, const Task& task) {
+void probe_worst_errors(const FitTarget& target, const spatial::Surface& level, double share,
+                        Correspondences& correspondences, const Task& task) {
   // Lattices of points: a wide one first, a narrow one where that finds something near to the maximum.
   constexpr int kWide = 4, kNarrow = 10;
   constexpr double kPromising = 0.7;
   std::vector<std::uint32_t> suspects;
   for (std::uint32_t t = 0; t < level.triangles.size(); ++t) {
-    const bool looked = ties.close[t].distance > 0;
-    if (!looked && static_cast<double>(ties.worst[t].distance) > share * ties.max) suspects.push_back(t);
+    const bool looked = correspondences.close[t].distance > 0;
+    if (!looked && static_cast<double>(correspondences.worst[t].distance) > share * correspondences.max)
+      suspects.push_back(t);
   }
-  const double promising = kPromising * ties.max;
+  const double promising = kPromising * correspondences.max;
   parallel_for(suspects.size(), 16, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<Vec3d> points;
     std::vector<std::array<float, 2>> shares;
@@ -441,17 +459,18 @@ void look_at_worst(const FitTarget& target, const spatial::Surface& level, doubl
       closest.assign(points.size(), {});
       batch.find(points, closest);
       for (std::size_t i = 0; i < points.size(); ++i) {
-        raise(ties.close[t],
+        raise(correspondences.close[t],
               {static_cast<float>(std::sqrt(closest[i].distance_sq)), shares[i][0], shares[i][1], closest[i].point});
       }
-      raise(ties.worst[t], ties.close[t]);
+      raise(correspondences.worst[t], correspondences.close[t]);
     };
     for (std::size_t k = begin; k < end; ++k) {
       look(suspects[k], kWide);
-      if (static_cast<double>(ties.worst[suspects[k]].distance) > promising) look(suspects[k], kNarrow);
+      if (static_cast<double>(correspondences.worst[suspects[k]].distance) > promising) look(suspects[k], kNarrow);
     }
   });
-  for (const Worst& worst : ties.worst) ties.max = std::max(ties.max, static_cast<double>(worst.distance));
+  for (const TriangleError& worst : correspondences.worst)
+    correspondences.max = std::max(correspondences.max, static_cast<double>(worst.distance));
 }
 
 }  // namespace lodestone::simplify::detail

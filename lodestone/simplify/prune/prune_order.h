@@ -13,9 +13,9 @@
 
 namespace lodestone::simplify {
 
-struct ThinPartsOptions {
+struct PruneOptions {
   bool keep_area = false;               ///< errors include how far the part that takes over grows
-  std::vector<std::uint8_t> locked;     ///< one a vertex, non-zero = its part stays as it is; empty = none
+  std::vector<std::uint8_t> no_move;    ///< one a vertex, non-zero = its part stays as it is; empty = none
   std::vector<float> weights;           ///< one a vertex, 0 or more; empty = 1. A part's errors count as many times as
                                         ///< the root of its largest weight says, but never less than once
   std::vector<std::uint32_t> left_out;  ///< triangles that take no part (CollapseLog::dropped), ascending
@@ -24,23 +24,23 @@ struct ThinPartsOptions {
 };
 
 /// A part vanishes; `absorber` takes over its area.
-struct Vanishing {
+struct PruneStep {
   std::uint32_t part = 0, absorber = 0;
   float error = 0;  ///< estimated, units of the metric, never falling along the list
 };
 
-struct ThinParts {
+struct PruneOrder {
   Parts parts;
-  std::vector<double> area;           ///< of each part, units of the metric squared
-  std::vector<std::uint8_t> stays;    ///< one a part: holds a locked vertex
-  std::vector<Vanishing> vanishings;  ///< all parts but the last and those that stay, the cheapest first
+  std::vector<double> area;            ///< of each part, units of the metric squared
+  std::vector<std::uint8_t> no_prune;  ///< one a part: holds a locked vertex
+  std::vector<PruneStep> steps;        ///< all parts but the last and those that stay, the cheapest first
 };
 
 /// The order in which the parts of a mesh may vanish, greedily the one that errs least. A part's error is how far its
 /// vertices are from the parts that remain, plus the error of what it stands for: parts that took over others inherit
 /// theirs. One part always remains. Time O(n log n) for parts of bounded size, memory about 150 bytes a triangle.
-/// The same for any number of threads. Errors: bad_argument (sizes of `locked` or `weights`, a triangle
+/// The same for any number of threads. Errors: bad_argument (sizes of `no_move` or `weights`, a triangle
 /// `left_out` that is not there; those of validate()), cancelled.
-Result<ThinParts> thin_parts(const Mesh& mesh, const ThinPartsOptions& options = {}, Task task = {});
+Result<PruneOrder> prune_order(const Mesh& mesh, const PruneOptions& options = {}, Task task = {});
 
 }  // namespace lodestone::simplify

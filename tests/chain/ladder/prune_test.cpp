@@ -13,8 +13,8 @@ LadderOptions options_for(bool prune, bool keep_area, std::vector<double> ratios
   LadderOptions options;
   options.distance.samples = 10'000;
   options.ratios = std::move(ratios);
-  options.influence.prune = prune;
-  options.influence.keep_area = keep_area;
+  options.constraints.prune = prune;
+  options.constraints.keep_area = keep_area;
   return options;
 }
 
@@ -67,7 +67,7 @@ TEST(Prune, an_error_target_holds_when_measured) {
   LadderOptions options = options_for(true, false, {});
   options.errors = {0.05, 0.2};
   for (const bool keep_area : {false, true}) {
-    options.influence.keep_area = keep_area;
+    options.constraints.keep_area = keep_area;
     const LadderResult r = built(make_model(test::canopy(300)), options);
     ASSERT_EQ(r.ladder.levels.size(), 3U);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -98,11 +98,11 @@ TEST(Prune, each_mesh_keeps_a_part_and_instances_count) {
 TEST(Prune, what_is_locked_stays_as_it_is) {
   Model model = make_model(test::canopy(200));
   LadderOptions options = options_for(false, true, {0.3});
-  options.influence.keep_border = true;
+  options.constraints.keep_border = true;
   const LadderResult bordered = built(model, options);
   EXPECT_LE(bordered.ladder.levels.back().vanished_parts, 1U) << "leaves are all border, only the trunk is not";
-  options.influence.keep_border = false;
-  options.influence.spheres = {{{0, 0, 3}, 0.8, 1, true}};
+  options.constraints.keep_border = false;
+  options.constraints.spheres = {{{0, 0, 3}, 0.8, 1, true}};
   const LadderResult r = built(model, options);
   const Mesh& before = model.meshes[0];
   const Mesh& after = r.ladder.levels[1].model.meshes[0];

@@ -1,4 +1,4 @@
-#include "app/options/influence.h"
+#include "app/options/constraints.h"
 
 #include <fmt/format.h>
 
@@ -35,7 +35,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 }
 
 // The centre and radius from the first four words.
-bool read_sphere(const std::vector<std::string_view>& words, chain::InfluenceSphere& out) {
+bool read_sphere(const std::vector<std::string_view>& words, chain::ConstraintSphere& out) {
   return words.size() >= 4 && read_number(words[0], out.center.x) && read_number(words[1], out.center.y) &&
          read_number(words[2], out.center.z) && read_number(words[3], out.radius) && out.radius > 0;
 }
@@ -62,17 +62,17 @@ Result<void> read_lines(const std::filesystem::path& path, const char* wrong, co
   return {};
 }
 
-Result<void> read_weights(const std::filesystem::path& path, InfluencePlan& plan) {
-  return read_lines(path, "is no sphere", kFileRemedy,
-                    [&](const std::vector<std::string_view>& words, const std::string& place) {
-                      chain::InfluenceSphere sphere;
-                      sphere.locked = words.size() == 5 && words[4] == "lock";
-                      const bool good = words.size() == 5 && read_sphere(words, sphere) &&
-                                        (sphere.locked || (read_number(words[4], sphere.weight) && sphere.weight >= 0));
-                      plan.influence.spheres.push_back(sphere);
-                      plan.sphere_places.push_back(place);
-                      return good;
-                    });
+Result<void> read_weights(const std::filesystem::path& path, ConstraintPlan& plan) {
+  return read_lines(
+      path, "is no sphere", kFileRemedy, [&](const std::vector<std::string_view>& words, const std::string& place) {
+        chain::ConstraintSphere sphere;
+        sphere.no_move = words.size() == 5 && words[4] == "lock";
+        const bool good = words.size() == 5 && read_sphere(words, sphere) &&
+                          (sphere.no_move || (read_number(words[4], sphere.weight) && sphere.weight >= 0));
+        plan.constraints.spheres.push_back(sphere);
+        plan.sphere_places.push_back(place);
+        return good;
+      });
 }
 
 bool read_count(std::string_view text, std::uint64_t& out) {
@@ -80,7 +80,7 @@ bool read_count(std::string_view text, std::uint64_t& out) {
   return error == std::errc{} && end == text.data() + text.size();
 }
 
-Result<void> read_only(const std::filesystem::path& path, InfluencePlan& plan) {
+Result<void> read_only(const std::filesystem::path& path, ConstraintPlan& plan) {
   constexpr const char* kRemedy = "a line is a triangle's number, from 0, or a range such as 100-199";
   Result<void> read = read_lines(
       path, "is no triangle", kRemedy, [&](const std::vector<std::string_view>& words, const std::string& place) {
@@ -89,26 +89,26 @@ Result<void> read_only(const std::filesystem::path& path, InfluencePlan& plan) {
         const bool good = words.size() == 1 && read_count(words[0].substr(0, dash), range.first) &&
                           (dash == std::string_view::npos || read_count(words[0].substr(dash + 1), range.last));
         if (dash == std::string_view::npos) range.last = range.first;
-        plan.influence.only.push_back(range);
+        plan.constraints.only.push_back(range);
         plan.only_places.push_back(place);
         return good && range.first <= range.last;
       });
   if (!read) return read;
-  if (plan.influence.only.empty()) {
+  if (plan.constraints.only.empty()) {
     return fail(ErrorCode::bad_format, "names no triangle", path.string(), kRemedy);
   }
   return {};
 }
 
-Result<void> read_lock(const std::string& text, InfluencePlan& plan) {
+Result<void> read_lock(const std::string& text, ConstraintPlan& plan) {
   const std::vector<std::string> parts = split_commas(text);
-  chain::InfluenceSphere sphere;
-  sphere.locked = true;
+  chain::ConstraintSphere sphere;
+  sphere.no_move = true;
   if (parts.size() != 4 || !read_sphere({parts.begin(), parts.end()}, sphere)) {
     return fail(ErrorCode::bad_argument, fmt::format("--lock {} is no sphere", text), {},
                 "four numbers, X,Y,Z,RADIUS, the radius above 0; several spheres go into a file for --weights");
   }
-  plan.influence.spheres.push_back(sphere);
+  plan.constraints.spheres.push_back(sphere);
   plan.sphere_places.push_back(fmt::format("--lock {}", text));
   return {};
 }
@@ -212,14 +212,14 @@ OptionGroup method_group() {
             Completion::file}}};
 }
 
-Result<InfluencePlan> influence_of(const Arguments& arguments, const LengthRules& lengths) {
-  InfluencePlan plan;
-  plan.influence.keep_border = arguments.has("--keep-border");
-  plan.influence.weight_attribute = arguments.text("--weight-by");
-  plan.influence.prune = arguments.has("--prune");
-  plan.influence.keep_area = arguments.has("--keep-area");
+Result<ConstraintPlan> constraints_of(const Arguments& arguments, const LengthRules& lengths) {
+  ConstraintPlan plan;
+  plan.constraints.keep_border = arguments.has("--keep-border");
+  plan.constraints.weight_attribute = arguments.text("--weight-by");
+  plan.constraints.prune = arguments.has("--prune");
+  plan.constraints.keep_area = arguments.has("--keep-area");
   plan.keep_parts = arguments.has("--keep-parts");
-  if (plan.keep_parts && plan.influence.vanishes()) {
+  if (plan.keep_parts && plan.constraints.vanishes()) {
     return fail(ErrorCode::bad_argument, "--keep-parts and --prune or --keep-area are asked for at once", {},
                 "choose one");
   }
@@ -232,7 +232,7 @@ Result<InfluencePlan> influence_of(const Arguments& arguments, const LengthRules
   if (arguments.has("--only")) {
     if (const Result<void> ok = read_only(arguments.text("--only"), plan); !ok) return fail(ok.error());
   }
-  if (const Result<void> ok = read_attribute_options(arguments, plan.influence); !ok) return fail(ok.error());
+  if (const Result<void> ok = read_attribute_options(arguments, plan.constraints); !ok) return fail(ok.error());
   Result<std::optional<LengthArgument>> weld = one_length(arguments, "--weld", lengths);
   if (!weld) return fail(weld.error());
   plan.weld = std::move(*weld);
@@ -245,11 +245,11 @@ Result<InfluencePlan> influence_of(const Arguments& arguments, const LengthRules
 namespace {
 
 // A tree or a lattice needs parts that vanish while others grow, or its levels are ruins.
-void choose_keep_area(const Model& model, std::size_t smallest, chain::Influence& influence,
+void choose_keep_area(const Model& model, std::size_t smallest, chain::SimplifyConstraints& constraints,
                       std::vector<std::string>& warnings, const Task& task) {
   const chain::ThinShare share = chain::thin_share(model, task);
   if (!chain::needs_keep_area(share, smallest)) return;
-  influence.keep_area = true;
+  constraints.keep_area = true;
   warnings.push_back(
       fmt::format("{} parts, {} of the area in thin ones: small parts may vanish and others grow, as by --keep-area "
                   "(--keep-parts: none vanishes)",
@@ -258,22 +258,23 @@ void choose_keep_area(const Model& model, std::size_t smallest, chain::Influence
 
 }  // namespace
 
-Result<chain::Influence> InfluencePlan::for_model(const Model& model, std::size_t smallest,
-                                                  std::vector<std::string>& warnings, const Task& task) const {
-  chain::Influence out = influence;
-  if (!keep_parts && !influence.vanishes() && influence.only.empty()) {
+Result<chain::SimplifyConstraints> ConstraintPlan::for_model(const Model& model, std::size_t smallest,
+                                                             std::vector<std::string>& warnings,
+                                                             const Task& task) const {
+  chain::SimplifyConstraints out = constraints;
+  if (!keep_parts && !constraints.vanishes() && constraints.only.empty()) {
     choose_keep_area(model, smallest, out, warnings, task);
     if (task.cancelled()) return cancelled_error("looking for thin parts");
   }
-  for (const std::size_t sphere : chain::empty_spheres(model, influence.spheres)) {
+  for (const std::size_t sphere : chain::empty_spheres(model, constraints.spheres)) {
     warnings.push_back(fmt::format("{}: this sphere holds no vertex", sphere_places[sphere]));
   }
-  tell_of_attributes(model, influence, warnings);
+  tell_of_attributes(model, constraints, warnings);
   std::uint64_t triangles = 0;
   for (const Mesh& mesh : model.meshes) triangles += mesh.triangles.size();
-  for (std::size_t i = 0; i < influence.only.size(); ++i) {
-    if (influence.only[i].last < triangles) continue;
-    return fail(ErrorCode::bad_format, fmt::format("there is no triangle {}", influence.only[i].last), only_places[i],
+  for (std::size_t i = 0; i < constraints.only.size(); ++i) {
+    if (constraints.only[i].last < triangles) continue;
+    return fail(ErrorCode::bad_format, fmt::format("there is no triangle {}", constraints.only[i].last), only_places[i],
                 fmt::format("the model has {}, counted from 0", with_separators(triangles)));
   }
   const auto in_model = [&](const std::optional<LengthArgument>& length, double& into) -> Result<void> {

@@ -1,6 +1,6 @@
 // Method   worst triangles split, others collapsed, what is new fitted and measured
 // Source   docs/papers/measured-feedback.md
-#include "lodestone/chain/ladder/equalize_detail.h"
+#include "lodestone/chain/ladder/redistribute_detail.h"
 
 #include <algorithm>
 
@@ -10,22 +10,22 @@
 namespace lodestone::chain::detail {
 
 using simplify::EdgeCollapseOptions;
-using simplify::FittedLevel;
+using simplify::TrackedLevel;
 
 namespace {
 
 constexpr double kSplit = 0.75;        // of the maximum: triangles above it are split
 constexpr double kSplitShare = 0.004;  // of all triangles that may be added a round
-constexpr double kHold = 1e4;          // weight of vertices where the level is worst, so that they stay
+constexpr double kWorstWeight = 1e4;   // weight of vertices where the level is worst, so that they stay
 constexpr int kLocalSolves = 2;
-constexpr float kKeep = 1e8F;  // weight of vertices to leave
-constexpr int kRings = 2;      // around what is new: vertices that are fitted again
+constexpr float kNoCollapseWeight = 1e8F;  // weight of vertices to leave
+constexpr int kRings = 2;                  // around what is new: vertices that are fitted again
 
 // Vertices farther than `rings` edges from those that are new to a mesh.
 std::vector<std::uint8_t> far_from_new(const Mesh& mesh, const Mesh& old, int rings) {
   std::vector<Vec3f> known = old.positions;
   std::sort(known.begin(), known.end(), before);
-  std::vector<std::uint8_t> far = at_places(mesh, known);
+  std::vector<std::uint8_t> far = at_positions(mesh, known);
   for (int ring = 0; ring < rings; ++ring) {
     const std::vector<std::uint8_t> last = far;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -38,18 +38,18 @@ std::vector<std::uint8_t> far_from_new(const Mesh& mesh, const Mesh& old, int ri
 }
 
 // Of vertices of a level, some of whose triangles have been split: the farther from the original, the heavier.
-std::vector<float> weights_for(const FittedLevel& level, const Mesh& split, const EqualizeOptions& options) {
+std::vector<float> weights_for(const TrackedLevel& level, const Mesh& split, const RedistributeOptions& options) {
   std::vector<float> weights(split.vertex_count(), 1.0F);
-  const std::vector<FittedLevel::Worst> worst = level.worst();
+  const std::vector<simplify::TriangleError> worst = level.worst();
   for (std::size_t t = 0; t < split.triangles.size(); ++t) {
     const double share = t < worst.size() && level.max() > 0 ? worst[t].distance / level.max() : 1;
-    const auto weight = static_cast<float>(1 + kHold * share * share * share * share);
+    const auto weight = static_cast<float>(1 + kWorstWeight * share * share * share * share);
     for (const std::uint32_t v : split.vertices_of(t)) weights[v] = std::max(weights[v], weight);
   }
-  for (const std::vector<Vec3f>* places : {&options.keep, &options.stay}) {
-    const std::vector<std::uint8_t> left = at_places(split, *places);
+  for (const std::vector<Vec3f>* positions : {&options.no_collapse, &options.no_move}) {
+    const std::vector<std::uint8_t> left = at_positions(split, *positions);
     for (std::size_t v = 0; v < left.size(); ++v) {
-      if (left[v] != 0) weights[v] = std::max(weights[v], kKeep);
+      if (left[v] != 0) weights[v] = std::max(weights[v], kNoCollapseWeight);
     }
   }
   return weights;
@@ -57,7 +57,7 @@ std::vector<float> weights_for(const FittedLevel& level, const Mesh& split, cons
 
 }  // namespace
 
-void hold_borders(const Mesh& mesh, float weight, std::vector<float>& weights, const Task& task) {
+void weight_borders(const Mesh& mesh, float weight, std::vector<float>& weights, const Task& task) {
   const EdgeTriangles edges = edge_triangles(mesh, task);
   for (const Edge& edge : edges.edges) {
     if (edge.count != 1) continue;
@@ -65,22 +65,22 @@ void hold_borders(const Mesh& mesh, float weight, std::vector<float>& weights, c
   }
 }
 
-std::vector<std::uint8_t> at_places(const Mesh& mesh, const std::vector<Vec3f>& places) {
+std::vector<std::uint8_t> at_positions(const Mesh& mesh, const std::vector<Vec3f>& positions) {
   std::vector<std::uint8_t> found(mesh.vertex_count(), 0);
   for (std::size_t v = 0; v < found.size(); ++v) {
-    found[v] = std::binary_search(places.begin(), places.end(), mesh.positions[v], before) ? 1 : 0;
+    found[v] = std::binary_search(positions.begin(), positions.end(), mesh.positions[v], before) ? 1 : 0;
   }
   return found;
 }
 
-Result<FittedLevel> equalize(const ShapeSource& source, const FittedLevel& level, const EqualizeOptions& options,
-                             const Task& task) {
+Result<TrackedLevel> redistribute_triangles(const FeedbackSource& source, const TrackedLevel& level,
+                                            const RedistributeOptions& options, const Task& task) {
   simplify::SplitResult split;
   if (options.fits) {
     const auto share = static_cast<std::size_t>(kSplitShare * static_cast<double>(level.mesh().triangles.size()));
     split = simplify::split_worst(level, kSplit, std::max<std::size_t>(2, share), source.options.keep_border,
-                                  at_places(level.mesh(), source.locked_places), at_places(level.mesh(), options.stay),
-                                  task);
+                                  at_positions(level.mesh(), source.no_move_positions),
+                                  at_positions(level.mesh(), options.no_move), task);
     std::sort(split.pulled.begin(), split.pulled.end(), before);
   } else {
     split.mesh = level.mesh();
@@ -88,21 +88,21 @@ Result<FittedLevel> equalize(const ShapeSource& source, const FittedLevel& level
   EdgeCollapseOptions collapse = source.options;
   collapse.target_triangles = options.most_triangles;
   collapse.record_log = false;
-  collapse.locked = at_places(split.mesh, source.locked_places);
+  collapse.no_move = at_positions(split.mesh, source.no_move_positions);
   collapse.weights = weights_for(level, split.mesh, options);
-  if (options.keeps_borders) hold_borders(split.mesh, kKeep, collapse.weights, task);
+  if (options.keeps_borders) weight_borders(split.mesh, kNoCollapseWeight, collapse.weights, task);
   Result<simplify::EdgeCollapseResult> made = simplify::collapse_edges(split.mesh, collapse, task);
   if (!made) return fail(made.error());
-  FittedLevel next(source.target, std::move(made->mesh), task, &level);
+  TrackedLevel next(source.target, std::move(made->mesh), task, &level);
   simplify::FitOptions fit;
   fit.solves = options.fits ? kLocalSolves : 0;
-  fit.locked = far_from_new(next.mesh(), level.mesh(), kRings);
-  const std::vector<std::uint8_t> kept = at_places(next.mesh(), source.locked_places);
-  const std::vector<std::uint8_t> pulled = at_places(next.mesh(), split.pulled);
-  const std::vector<std::uint8_t> stay = at_places(next.mesh(), options.stay);
-  for (std::size_t v = 0; v < fit.locked.size(); ++v) {
-    if (kept[v] != 0 || pulled[v] != 0 || stay[v] != 0)
-      fit.locked[v] = 1;  // fitting would let those out again that were pulled in
+  fit.no_move = far_from_new(next.mesh(), level.mesh(), kRings);
+  const std::vector<std::uint8_t> kept = at_positions(next.mesh(), source.no_move_positions);
+  const std::vector<std::uint8_t> pulled = at_positions(next.mesh(), split.pulled);
+  const std::vector<std::uint8_t> no_move = at_positions(next.mesh(), options.no_move);
+  for (std::size_t v = 0; v < fit.no_move.size(); ++v) {
+    if (kept[v] != 0 || pulled[v] != 0 || no_move[v] != 0)
+      fit.no_move[v] = 1;  // fitting would let those out again that were pulled in
   }
   next.fit(fit, task);
   return next;

@@ -1,4 +1,4 @@
-#include "app/samples/rings.h"
+#include "app/samples/surface_of_revolution.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 
 std::size_t even_count(std::size_t triangles) { return std::max<std::size_t>(6, (triangles + 1) / 2 * 2); }
 
-double average_around(const RingProfile& profile) {
+double average_around(const RevolutionProfile& profile) {
   constexpr int kSteps = 1000;
   double sum = 0;
   for (int i = 0; i < kSteps; ++i) sum += profile.around((i + 0.5) / kSteps);
@@ -38,7 +38,7 @@ void zip_rings(std::vector<Triangle>& out, std::uint32_t low, std::uint32_t a, s
 
 }  // namespace
 
-RingPlan plan_rings(std::size_t triangles, const RingProfile& profile) {
+RevolutionPlan plan_rings(std::size_t triangles, const RevolutionProfile& profile) {
   const std::size_t half = even_count(triangles) / 2;  // vertices on all rings
   // Equilateral triangles of side s: rings are s * sqrt(3) / 2 apart, and a triangle covers s^2 * sqrt(3) / 4.
   const double root3 = std::sqrt(3.0);
@@ -47,7 +47,7 @@ RingPlan plan_rings(std::size_t triangles, const RingProfile& profile) {
   const auto wanted = static_cast<std::size_t>(profile.length / (side * root3 / 2));
   const std::size_t rings = std::clamp<std::size_t>(wanted, 1, half / 3);
 
-  RingPlan plan;
+  RevolutionPlan plan;
   std::vector<double> weights;
   double total = 0;
   for (std::size_t i = 0; i < rings; ++i) {
@@ -68,7 +68,7 @@ RingPlan plan_rings(std::size_t triangles, const RingProfile& profile) {
   return plan;
 }
 
-Mesh stack_rings(const RingPlan& plan, const RingSurface& surface, const Task& task) {
+Mesh stack_rings(const RevolutionPlan& plan, const RingSurface& surface, const Task& task) {
   std::vector<std::uint32_t> first;  // vertex of each ring; vertex 0 is the lower pole
   std::uint32_t next = 1;
   for (const std::uint32_t count : plan.counts) {

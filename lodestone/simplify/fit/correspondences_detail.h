@@ -1,4 +1,4 @@
-// Ties: what pulls a level to its original, in both directions.
+// Correspondences: pairs of points that pull a level to its original, in both directions.
 #pragma once
 
 #include <array>
@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "lodestone/simplify/fit/target.h"
+#include "lodestone/simplify/fit/triangle_error.h"
 
 namespace lodestone::simplify::detail {
 
 /// A point of the level and its partner on the original: either the closest point of the level to a point of the
 /// original, or a point of the level and the closest point of the original.
-struct Tie {
+struct Correspondence {
   std::uint32_t triangle = 0;   ///< of the level
   float second = 0, third = 0;  ///< weights of the level's second and third corner
   float weight = 0;             ///< share of its side's area that it stands for
@@ -27,44 +28,41 @@ struct Tie {
 /// corner, so that few of them tell much of its shape. Their sum integrates linear functions exactly.
 inline constexpr float kInner[3][2] = {{1.0F / 6, 1.0F / 6}, {2.0F / 3, 1.0F / 6}, {1.0F / 6, 2.0F / 3}};
 
-/// The largest distance found at a triangle of the level: where on it, and the partner there.
-struct Worst {
-  float distance = 0;
-  float second = 0, third = 0;
-  Vec3d partner;
-};
-
-struct Ties {
-  std::vector<Tie> list;             ///< by triangle; the last ones of each are the points of the level
+struct Correspondences {
+  std::vector<Correspondence> list;  ///< by triangle; the last ones of each are the points of the level
   std::vector<std::uint32_t> first;  ///< of each triangle, and the end
   /// Mean of both directions' area-weighted mean distances, and the largest distance.
   double mean = 0, max = 0;
-  double energy = 0;          ///< sum of weighted squares over both directions
-  std::vector<Worst> worst;   ///< of each triangle
-  std::vector<Worst> corner;  ///< the distance of each vertex of the level
-  std::vector<Worst> close;   ///< the same of the triangles that have been looked at closely; a distance of 0 = not so
+  double energy = 0;                  ///< sum of weighted squares over both directions
+  std::vector<TriangleError> worst;   ///< of each triangle
+  std::vector<TriangleError> corner;  ///< the distance of each vertex of the level
+  std::vector<TriangleError>
+      close;  ///< the same of the triangles that have been looked at closely; a distance of 0 = not so
 };
 
 using TrianglePair = std::array<std::uint32_t, 2>;
 
-/// After pairs of triangles have changed within their own outline: what was tied to a pair goes to the nearer of both
-/// anew. O(ties + pairs * log triangles).
-void retie(const FitTarget& target, const spatial::Surface& level, const std::vector<TrianglePair>& changed, Ties& ties,
-           const Task& task);
+/// After pairs of triangles have changed within their own outline: what was joined to a pair goes to the nearer of both
+/// anew. O(correspondences + pairs * log triangles).
+void update_correspondences(const FitTarget& target, const spatial::Surface& level,
+                            const std::vector<TrianglePair>& changed, Correspondences& correspondences,
+                            const Task& task);
 
-/// A level as it was, and its ties then.
+/// A level as it was, and its correspondences then.
 struct Known {
   spatial::Surface level;
-  Ties ties;
+  Correspondences correspondences;
 };
 
 /// Finds all partners. With what is known of a level that has triangles in common with this one, only those partners
-/// are looked for that the others could change; the ties are the same, and what look_at_worst() found on triangles that
+/// are looked for that the others could change; the correspondences are the same, and what probe_worst_errors() found on triangles that
 /// are there still is kept. O((points + triangles) log triangles).
-Ties make_ties(const FitTarget& target, const spatial::Surface& level, const Task& task, const Known* known = nullptr);
+Correspondences find_correspondences(const FitTarget& target, const spatial::Surface& level, const Task& task,
+                                     const Known* known = nullptr);
 
 /// Looks closely at triangles whose worst is above `share` of the maximum, if that was not done before: many points on
 /// each, and on its sides. Raises `worst` and `max` where more is found.
-void look_at_worst(const FitTarget& target, const spatial::Surface& level, double share, Ties& ties, const Task& task);
+void probe_worst_errors(const FitTarget& target, const spatial::Surface& level, double share,
+                        Correspondences& correspondences, const Task& task);
 
 }  // namespace lodestone::simplify::detail

@@ -14,13 +14,13 @@ namespace lodestone::spatial {
 /// Whether a side of one triangle passes through the other, by the signs of tetrahedra's volumes. Touching is no
 /// crossing, nor is lying in one plane. In double precision: what is within rounding of touching may be told either
 /// way.
-bool triangles_cross(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b);
+bool triangles_intersect(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b);
 
 /// Pairs of triangles of the tree's surface that cross and share no vertex, the lower number first, in order; only
 /// those with one that is `wanted` (one a triangle, non-zero = wanted; empty = all). O(n log n) unless boxes overlap
 /// much.
-std::vector<std::array<std::uint32_t, 2>> crossings(const Bvh& tree, std::span<const std::uint8_t> wanted,
-                                                    const Task& task);
+std::vector<std::array<std::uint32_t, 2>> self_intersections(const Bvh& tree, std::span<const std::uint8_t> wanted,
+                                                             const Task& task);
 
 /// Pairs of triangles that meet at an edge and lie on each other, by an angle of less than 10 degrees, the lower number
 /// first, in order. O(n).

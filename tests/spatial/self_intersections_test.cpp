@@ -1,4 +1,4 @@
-#include "lodestone/spatial/crossings.h"
+#include "lodestone/spatial/self_intersections.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace {
 
 using Corners = std::array<Vec3d, 3>;
 
-TEST(Crossings, of_two_triangles) {
+TEST(SelfIntersections, of_two_triangles) {
   const Corners flat{Vec3d{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
   struct Row {
     const char* what;
@@ -28,12 +28,12 @@ TEST(Crossings, of_two_triangles) {
       {"without area", {Vec3d{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, false},
   };
   for (const Row& row : rows) {
-    EXPECT_EQ(triangles_cross(flat, row.other), row.crosses) << row.what;
-    EXPECT_EQ(triangles_cross(row.other, flat), row.crosses) << row.what;
+    EXPECT_EQ(triangles_intersect(flat, row.other), row.crosses) << row.what;
+    EXPECT_EQ(triangles_intersect(row.other, flat), row.crosses) << row.what;
   }
 }
 
-TEST(Crossings, of_a_soup_are_those_that_brute_force_finds) {
+TEST(SelfIntersections, of_a_soup_are_those_that_brute_force_finds) {
   const Mesh mesh = test::soup(3, 150, 300);
   const Surface surface = *flatten(make_model(mesh), {});
   const Bvh tree(surface);
@@ -46,19 +46,19 @@ TEST(Crossings, of_a_soup_are_those_that_brute_force_finds) {
       for (const std::uint32_t v : surface.triangles[t]) {
         for (const std::uint32_t w : surface.triangles[u]) joined = joined || v == w;
       }
-      if (joined || !triangles_cross(surface.corners(t), surface.corners(u))) continue;
+      if (joined || !triangles_intersect(surface.corners(t), surface.corners(u))) continue;
       all.push_back({t, u});
       if (wanted[t] != 0 || wanted[u] != 0) of_some.push_back({t, u});
     }
   }
   EXPECT_GT(all.size(), 20U);
-  EXPECT_EQ(crossings(tree, {}, {}), all);
-  EXPECT_EQ(crossings(tree, wanted, {}), of_some);
+  EXPECT_EQ(self_intersections(tree, {}, {}), all);
+  EXPECT_EQ(self_intersections(tree, wanted, {}), of_some);
 }
 
-TEST(Crossings, of_a_clean_surface_are_none) {
+TEST(SelfIntersections, of_a_clean_surface_are_none) {
   const Surface surface = *flatten(make_model(test::sphere(30)), {});
-  EXPECT_TRUE(crossings(Bvh(surface), {}, {}).empty());
+  EXPECT_TRUE(self_intersections(Bvh(surface), {}, {}).empty());
 }
 
 TEST(Folds, are_edges_where_triangles_lie_on_each_other) {

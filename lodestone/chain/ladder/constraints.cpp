@@ -1,7 +1,7 @@
 // What users tell of a model (spheres, a weight attribute, ranges of triangles, names) becomes one weight and one lock
 // a vertex, and one mark a triangle that must not change. Of several opinions the largest weight counts, and a lock
 // wins; a mesh that is drawn several times obeys all its instances.
-#include "lodestone/chain/ladder/influence.h"
+#include "lodestone/chain/ladder/constraints.h"
 
 #include <fmt/format.h>
 
@@ -52,21 +52,21 @@ Result<void> add_attribute(const Mesh& mesh, const AttributeStream& stream, std:
   return {};
 }
 
-bool holds(const InfluenceSphere& s, Vec3d p) { return length_sq(p - s.center) <= s.radius * s.radius; }
+bool holds(const ConstraintSphere& s, Vec3d p) { return length_sq(p - s.center) <= s.radius * s.radius; }
 
-void add_spheres(const Model& model, std::size_t mesh_index, const std::vector<InfluenceSphere>& spheres,
-                 VertexInfluence& out) {
+void add_spheres(const Model& model, std::size_t mesh_index, const std::vector<ConstraintSphere>& spheres,
+                 VertexConstraints& out) {
   const Mesh& mesh = model.meshes[mesh_index];
   std::vector<float> inside(mesh.vertex_count(), -1);
-  out.locked.resize(mesh.vertex_count(), 0);
+  out.no_move.resize(mesh.vertex_count(), 0);
   for (const Instance& instance : model.instances) {
     if (instance.mesh != mesh_index) continue;
     for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
       const Vec3d p = instance.transform.point(mesh.position(v));
-      for (const InfluenceSphere& s : spheres) {
+      for (const ConstraintSphere& s : spheres) {
         if (!holds(s, p)) continue;
-        if (s.locked) out.locked[v] = 1;
-        if (!s.locked) inside[v] = std::max(inside[v], static_cast<float>(std::min(s.weight, 1e30)));
+        if (s.no_move) out.no_move[v] = 1;
+        if (!s.no_move) inside[v] = std::max(inside[v], static_cast<float>(std::min(s.weight, 1e30)));
       }
     }
   }
@@ -77,44 +77,45 @@ void add_spheres(const Model& model, std::size_t mesh_index, const std::vector<I
 
 }  // namespace
 
-Result<std::vector<VertexInfluence>> vertex_influences(const Model& model, const Influence& influence) {
+Result<std::vector<VertexConstraints>> vertex_constraints(const Model& model, const SimplifyConstraints& constraints) {
   if (const Result<void> ok = validate(model); !ok) return fail(ok.error());
-  std::vector<VertexInfluence> out(model.meshes.size());
-  const Result<std::vector<std::vector<std::uint8_t>>> untouched = untouched_triangles(model, influence);
+  std::vector<VertexConstraints> out(model.meshes.size());
+  const Result<std::vector<std::vector<std::uint8_t>>> untouched = untouched_triangles(model, constraints);
   if (!untouched) return fail(untouched.error());
   for (std::size_t m = 0; m < untouched->size(); ++m) {
-    out[m].locked = vertices_of_triangles(model.meshes[m], (*untouched)[m]);
+    out[m].no_move = vertices_of_triangles(model.meshes[m], (*untouched)[m]);
   }
-  if (influence.spheres.empty() && influence.weight_attribute.empty()) return out;
-  bool found = influence.weight_attribute.empty();
+  if (constraints.spheres.empty() && constraints.weight_attribute.empty()) return out;
+  bool found = constraints.weight_attribute.empty();
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
     const Mesh& mesh = model.meshes[m];
     out[m].weights.assign(mesh.vertex_count(), 1);
-    if (!influence.weight_attribute.empty()) {
-      if (const AttributeStream* stream = weight_stream(mesh, influence.weight_attribute); stream != nullptr) {
+    if (!constraints.weight_attribute.empty()) {
+      if (const AttributeStream* stream = weight_stream(mesh, constraints.weight_attribute); stream != nullptr) {
         found = true;
         if (const Result<void> ok = add_attribute(mesh, *stream, out[m].weights); !ok) return fail(ok.error());
       }
     }
-    if (!influence.spheres.empty()) add_spheres(model, m, influence.spheres, out[m]);
-    // Where nothing weighs more, there are no weights: levels can be shaped as without them.
+    if (!constraints.spheres.empty()) add_spheres(model, m, constraints.spheres, out[m]);
+    // Where nothing weighs more, there are no weights: levels can be improved as without them.
     const std::vector<float>& weights = out[m].weights;
     if (std::all_of(weights.begin(), weights.end(), [](float w) { return w == 1; })) out[m].weights.clear();
   }
   if (!found) {
-    return fail(ErrorCode::bad_argument, fmt::format("no mesh has an attribute '{}'", influence.weight_attribute), {},
+    return fail(ErrorCode::bad_argument, fmt::format("no mesh has an attribute '{}'", constraints.weight_attribute), {},
                 names_of(model));
   }
   return out;
 }
 
-Result<std::vector<std::vector<std::uint8_t>>> untouched_triangles(const Model& model, const Influence& influence) {
+Result<std::vector<std::vector<std::uint8_t>>> untouched_triangles(const Model& model,
+                                                                   const SimplifyConstraints& constraints) {
   std::vector<std::vector<std::uint8_t>> out;
-  if (influence.only.empty()) return out;
+  if (constraints.only.empty()) return out;
   std::uint64_t all = 0;
   for (const Mesh& mesh : model.meshes) all += mesh.triangles.size();
   std::vector<std::uint8_t> untouched(static_cast<std::size_t>(all), 1);
-  for (const TriangleRange& range : influence.only) {
+  for (const TriangleRange& range : constraints.only) {
     if (range.first > range.last || range.last >= all) {
       return fail(ErrorCode::bad_argument, fmt::format("there are no triangles {} to {}", range.first, range.last), {},
                   fmt::format("the model has {}, counted from 0", all));
@@ -142,7 +143,7 @@ std::vector<std::uint8_t> vertices_of_triangles(const Mesh& mesh, const std::vec
   return out;
 }
 
-std::vector<std::size_t> empty_spheres(const Model& model, const std::vector<InfluenceSphere>& spheres) {
+std::vector<std::size_t> empty_spheres(const Model& model, const std::vector<ConstraintSphere>& spheres) {
   std::vector<std::size_t> empty(spheres.size());
   std::iota(empty.begin(), empty.end(), std::size_t{0});
   for (const Instance& instance : model.instances) {

@@ -1,4 +1,4 @@
-// How far a point has drifted from the original surface, by what the triangles of a fan know.
+// How far a point has come from the original surface, by what the triangles of a fan know.
 #pragma once
 
 #include <cstddef>
@@ -11,9 +11,9 @@ namespace lodestone::simplify::detail {
 /// A triangle of a fan, seen from the apex.
 struct alignas(16) Leaf {
   Vec3f a;  ///< relative to the apex
-  float drift_a;
+  float error_a;
   Vec3f b;
-  float drift_b;
+  float error_b;
   Vec3f n;               ///< cross(a, b)
   float inverse_square;  ///< of the length of n; 0 for a triangle without area
 };
@@ -29,13 +29,13 @@ class FanDistance {
   }
   /// Call once all triangles are added.
   void pad();
-  /// Distance from q (relative to the apex) to the nearest triangle that it is above or below, and the drift there,
+  /// Distance from q (relative to the apex) to the nearest triangle that it is above or below, and the accumulated error there,
   /// interpolated. False = there is none.
-  bool drift_above(Vec3f q, float apex_drift, float& drift) const;
+  bool error_above(Vec3f q, float apex_error, float& accumulated) const;
   /// The same to the nearest edge. At least one triangle.
-  float drift_at_edges(Vec3f q, float apex_drift) const;
+  float error_at_edges(Vec3f q, float apex_error) const;
   /// The one or the other.
-  float drift_at(Vec3f q, float apex_drift) const;
+  float error_at(Vec3f q, float apex_error) const;
 
  private:
   std::vector<Leaf> leaf_;

@@ -1,4 +1,4 @@
-#include "lodestone/simplify/prune/thin_parts.h"
+#include "lodestone/simplify/prune/prune_order.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 namespace lodestone::simplify {
 namespace {
 
-ThinParts order_of(const Mesh& mesh, const ThinPartsOptions& options = {}) {
-  Result<ThinParts> r = thin_parts(mesh, options);
+PruneOrder order_of(const Mesh& mesh, const PruneOptions& options = {}) {
+  Result<PruneOrder> r = prune_order(mesh, options);
   EXPECT_TRUE(r);
   return std::move(*r);
 }
@@ -31,23 +31,23 @@ Mesh crumbs(int count) {
   return mesh;
 }
 
-bool equal(const ThinParts& a, const ThinParts& b) {
-  return std::equal(a.vanishings.begin(), a.vanishings.end(), b.vanishings.begin(), b.vanishings.end(),
-                    [](const Vanishing& x, const Vanishing& y) {
+bool equal(const PruneOrder& a, const PruneOrder& b) {
+  return std::equal(a.steps.begin(), a.steps.end(), b.steps.begin(), b.steps.end(),
+                    [](const PruneStep& x, const PruneStep& y) {
                       return x.part == y.part && x.absorber == y.absorber && x.error == y.error;
                     });
 }
 
-TEST(ThinParts, all_but_one_vanish_once_and_errors_never_fall) {
+TEST(PruneOrder, all_but_one_vanish_once_and_errors_never_fall) {
   for (const bool keep_area : {false, true}) {
-    ThinPartsOptions options;
+    PruneOptions options;
     options.keep_area = keep_area;
-    const ThinParts thin = order_of(test::canopy(300), options);
+    const PruneOrder thin = order_of(test::canopy(300), options);
     EXPECT_EQ(thin.parts.count, 301U);
-    ASSERT_EQ(thin.vanishings.size(), 300U);
+    ASSERT_EQ(thin.steps.size(), 300U);
     std::vector<bool> gone(301, false);
     float error = 0;
-    for (const Vanishing& v : thin.vanishings) {
+    for (const PruneStep& v : thin.steps) {
       EXPECT_FALSE(gone[v.part]);
       EXPECT_FALSE(gone[v.absorber]) << "who takes over is still there";
       EXPECT_NE(v.part, v.absorber);
@@ -59,12 +59,12 @@ TEST(ThinParts, all_but_one_vanish_once_and_errors_never_fall) {
   }
 }
 
-TEST(ThinParts, an_error_is_not_less_than_what_is_lost) {
+TEST(PruneOrder, an_error_is_not_less_than_what_is_lost) {
   const Mesh mesh = crumbs(120);
-  const ThinParts thin = order_of(mesh);
+  const PruneOrder thin = order_of(mesh);
   std::vector<bool> gone(120, false);
   double most_over = 0;
-  for (const Vanishing& v : thin.vanishings) {
+  for (const PruneStep& v : thin.steps) {
     gone[v.part] = true;
     double lost = 0;  // of all vertices of vanished parts, the farthest from what is left
     for (std::uint32_t p = 0; p < mesh.vertex_count(); ++p) {
@@ -85,48 +85,48 @@ TEST(ThinParts, an_error_is_not_less_than_what_is_lost) {
   EXPECT_LT(most_over, 6) << "and not without bounds above it";
 }
 
-TEST(ThinParts, lengths_are_those_of_the_metric) {
-  ThinPartsOptions options;
-  const ThinParts plain = order_of(crumbs(40), options);
+TEST(PruneOrder, lengths_are_those_of_the_metric) {
+  PruneOptions options;
+  const PruneOrder plain = order_of(crumbs(40), options);
   options.metric = Mat4d::scale({10, 10, 10});
-  const ThinParts large = order_of(crumbs(40), options);
-  ASSERT_EQ(plain.vanishings.size(), large.vanishings.size());
-  for (std::size_t i = 0; i < plain.vanishings.size(); ++i) {
-    EXPECT_NEAR(large.vanishings[i].error, 10 * plain.vanishings[i].error, 1e-5 * large.vanishings[i].error);
+  const PruneOrder large = order_of(crumbs(40), options);
+  ASSERT_EQ(plain.steps.size(), large.steps.size());
+  for (std::size_t i = 0; i < plain.steps.size(); ++i) {
+    EXPECT_NEAR(large.steps[i].error, 10 * plain.steps[i].error, 1e-5 * large.steps[i].error);
   }
   EXPECT_NEAR(large.area[5], 100 * plain.area[5], 1e-9);
 }
 
-TEST(ThinParts, what_holds_a_locked_vertex_stays_and_what_matters_stays_longer) {
+TEST(PruneOrder, what_holds_a_locked_vertex_stays_and_what_matters_stays_longer) {
   const Mesh mesh = crumbs(50);
-  ThinPartsOptions options;
-  options.locked.assign(mesh.vertex_count(), 0);
-  options.locked[3 * 7] = options.locked[3 * 30] = 1;
-  const ThinParts locked = order_of(mesh, options);
-  EXPECT_EQ(locked.vanishings.size(), 48U);
-  for (const Vanishing& v : locked.vanishings) EXPECT_TRUE(v.part != 7 && v.part != 30);
-  options.locked.clear();
+  PruneOptions options;
+  options.no_move.assign(mesh.vertex_count(), 0);
+  options.no_move[3 * 7] = options.no_move[3 * 30] = 1;
+  const PruneOrder locked = order_of(mesh, options);
+  EXPECT_EQ(locked.steps.size(), 48U);
+  for (const PruneStep& v : locked.steps) EXPECT_TRUE(v.part != 7 && v.part != 30);
+  options.no_move.clear();
   options.weights.assign(mesh.vertex_count(), 1);
   options.weights[3 * 7] = 1e6F;
-  EXPECT_EQ(order_of(mesh, options).vanishings.size(), 49U);
-  for (const Vanishing& v : order_of(mesh, options).vanishings) EXPECT_NE(v.part, 7U);
+  EXPECT_EQ(order_of(mesh, options).steps.size(), 49U);
+  for (const PruneStep& v : order_of(mesh, options).steps) EXPECT_NE(v.part, 7U);
   options.weights.resize(2);
-  EXPECT_EQ(thin_parts(mesh, options).error().code, ErrorCode::bad_argument);
+  EXPECT_EQ(prune_order(mesh, options).error().code, ErrorCode::bad_argument);
 }
 
-TEST(ThinParts, the_same_for_any_number_of_threads) {
-  ThinPartsOptions options;
+TEST(PruneOrder, the_same_for_any_number_of_threads) {
+  PruneOptions options;
   options.keep_area = true;
   const Mesh mesh = test::canopy(400);
-  const ThinParts one = *thin_parts(mesh, options, Task::root({}, 1));
-  EXPECT_TRUE(equal(one, *thin_parts(mesh, options, Task::root({}, 2))));
-  EXPECT_TRUE(equal(one, *thin_parts(mesh, options, Task::root({}, 7))));
+  const PruneOrder one = *prune_order(mesh, options, Task::root({}, 1));
+  EXPECT_TRUE(equal(one, *prune_order(mesh, options, Task::root({}, 2))));
+  EXPECT_TRUE(equal(one, *prune_order(mesh, options, Task::root({}, 7))));
   const Task task = Task::root({});
   task.cancel();
-  EXPECT_EQ(thin_parts(mesh, options, task).error().code, ErrorCode::cancelled);
+  EXPECT_EQ(prune_order(mesh, options, task).error().code, ErrorCode::cancelled);
 }
 
-TEST(ThinParts, can_be_cancelled_at_any_moment) {
+TEST(PruneOrder, can_be_cancelled_at_any_moment) {
   Mesh mesh;  // parts of more vertices than are asked at once
   const Mesh torus = test::torus(9);
   for (std::uint64_t i = 0; i < 1500; ++i) {
@@ -142,26 +142,26 @@ TEST(ThinParts, can_be_cancelled_at_any_moment) {
       if (done > when) running->cancel();
     });
     running = &task;
-    const Result<ThinParts> out = thin_parts(mesh, {}, task);
+    const Result<PruneOrder> out = prune_order(mesh, {}, task);
     ASSERT_FALSE(out);
     EXPECT_EQ(out.error().code, ErrorCode::cancelled);
   }
 }
 
-TEST(ThinParts, odd_meshes_are_no_trouble) {
+TEST(PruneOrder, odd_meshes_are_no_trouble) {
   for (const test::Shape& shape : test::small_shapes()) {
-    const ThinParts thin = order_of(shape.make());
-    EXPECT_LT(thin.vanishings.size(), std::max<std::size_t>(1, thin.parts.count)) << shape.name;
+    const PruneOrder thin = order_of(shape.make());
+    EXPECT_LT(thin.steps.size(), std::max<std::size_t>(1, thin.parts.count)) << shape.name;
   }
-  EXPECT_TRUE(order_of(Mesh{}).vanishings.empty());
+  EXPECT_TRUE(order_of(Mesh{}).steps.empty());
   // Parts without area, and one of which nothing takes part.
   Mesh mesh = crumbs(3);
   mesh.positions[1] = mesh.positions[2] = mesh.positions[0];
-  ThinPartsOptions options;
+  PruneOptions options;
   options.keep_area = true;
-  EXPECT_EQ(order_of(mesh, options).vanishings.size(), 2U);
+  EXPECT_EQ(order_of(mesh, options).steps.size(), 2U);
   options.left_out = {0, 1};
-  EXPECT_TRUE(order_of(mesh, options).vanishings.empty());
+  EXPECT_TRUE(order_of(mesh, options).steps.empty());
 }
 
 }  // namespace

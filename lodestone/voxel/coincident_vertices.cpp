@@ -2,11 +2,11 @@
 #include <cstdint>
 #include <numeric>
 
-#include "lodestone/voxel/equal_places_detail.h"
+#include "lodestone/voxel/coincident_vertices_detail.h"
 
 namespace lodestone::voxel::detail {
 
-void part_equal_places(const std::vector<Vec3f>& before, std::vector<Vec3f>& moved) {
+void separate_coincident_vertices(const std::vector<Vec3f>& before, std::vector<Vec3f>& moved) {
   std::vector<std::uint32_t> order(moved.size());
   std::iota(order.begin(), order.end(), 0U);
   const auto less = [&](std::uint32_t a, std::uint32_t b) {

@@ -9,6 +9,6 @@ namespace lodestone::voxel::detail {
 
 /// Puts all but the first of vertices at one place back to where they were: whoever welds by position would take them
 /// for one, and the surface would not be manifold. O(n log n).
-void part_equal_places(const std::vector<Vec3f>& before, std::vector<Vec3f>& moved);
+void separate_coincident_vertices(const std::vector<Vec3f>& before, std::vector<Vec3f>& moved);
 
 }  // namespace lodestone::voxel::detail

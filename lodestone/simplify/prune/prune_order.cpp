@@ -2,7 +2,7 @@
 // Cost     O(n log n): errors only grow while parts vanish, so an old one is a lower bound; what is nearest to a vertex
 //          is asked again only when that part is gone and the vertex's own part is the cheapest
 // Steps    parts -> tree of parts -> lower bounds -> { the cheapest is looked at anew, and goes or waits }
-#include "lodestone/simplify/prune/thin_parts.h"
+#include "lodestone/simplify/prune/prune_order.h"
 
 #include <fmt/format.h>
 
@@ -46,7 +46,7 @@ struct Part {
 
 class Greedy {
  public:
-  Greedy(const Mesh& mesh, const ThinPartsOptions& options, ThinParts& out, const Task& task)
+  Greedy(const Mesh& mesh, const PruneOptions& options, PruneOrder& out, const Task& task)
       : keep_area_(options.keep_area), out_(out), task_(task), parts_(out.parts.count) {
     place(mesh, options);
     gather_triangles(mesh, options.left_out);
@@ -91,7 +91,7 @@ class Greedy {
     return std::span(vertices_).subspan(vertex_first_[p], vertex_first_[p + 1] - vertex_first_[p]);
   }
 
-  void place(const Mesh& mesh, const ThinPartsOptions& options) {
+  void place(const Mesh& mesh, const PruneOptions& options) {
     positions_.resize(mesh.vertex_count());
     parallel_for(positions_.size(), kChunk, task_, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t v = begin; v < end; ++v) {
@@ -129,13 +129,13 @@ class Greedy {
     }
   }
 
-  void measure_parts(const ThinPartsOptions& options) {
+  void measure_parts(const PruneOptions& options) {
     std::vector<detail::PartMeasure> measures(parts_.size());
     for (const Triangle& t : triangles_) {
       measures[out_.parts.of_vertex[t[0]]].add_triangle(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
     }
     out_.area.resize(parts_.size());
-    out_.stays.assign(parts_.size(), 0);
+    out_.no_prune.assign(parts_.size(), 0);
     for (std::uint32_t p = 0; p < parts_.size(); ++p) {
       Part& part = parts_[p];
       measures[p].end_triangles();
@@ -145,7 +145,7 @@ class Greedy {
       out_.area[p] = part.stands = part.shape.area;
       double weight = 1;
       for (const std::uint32_t v : vertices_of(p)) {
-        if (!options.locked.empty() && options.locked[v] != 0) out_.stays[p] = 1;
+        if (!options.no_move.empty() && options.no_move[v] != 0) out_.no_prune[p] = 1;
         if (!options.weights.empty()) weight = std::max(weight, static_cast<double>(options.weights[v]));
       }
       part.factor = std::sqrt(weight);
@@ -158,7 +158,7 @@ class Greedy {
     std::vector<double> bounds(parts_.size(), 0);
     parallel_for(parts_.size(), 16, task_, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (auto p = static_cast<std::uint32_t>(begin); p < end; ++p) {
-        if (!parts_[p].alive || out_.stays[p] != 0) continue;
+        if (!parts_[p].alive || out_.no_prune[p] != 0) continue;
         const auto vertices = vertices_of(p);
         const std::size_t step = (vertices.size() + kBoundVertices - 1) / kBoundVertices;
         double most = 0;
@@ -171,7 +171,7 @@ class Greedy {
     });
     if (task_.cancelled()) return;
     for (std::uint32_t p = 0; p < parts_.size(); ++p) {
-      if (parts_[p].alive && out_.stays[p] == 0) queue_.push({bounds[p], p});
+      if (parts_[p].alive && out_.no_prune[p] == 0) queue_.push({bounds[p], p});
     }
   }
 
@@ -213,7 +213,7 @@ class Greedy {
       return;
     }
     if (part.heir != kNone && parts_[part.heir].alive) return;
-    const auto may_grow = [&](std::uint32_t q) { return q != p && out_.stays[q] == 0 && out_.area[q] > 0; };
+    const auto may_grow = [&](std::uint32_t q) { return q != p && out_.no_prune[q] == 0 && out_.area[q] > 0; };
     const double limit = kKind * out_.area[p];
     part.heir =
         tree_->nearest(part.shape.center, [&](std::uint32_t q) { return may_grow(q) && out_.area[q] <= limit; }).part;
@@ -224,7 +224,7 @@ class Greedy {
   void vanish(const Entry& entry) {
     Part& part = parts_[entry.part];
     last_error_ = std::max(last_error_, entry.error);
-    out_.vanishings.push_back({entry.part, part.heir, static_cast<float>(last_error_)});
+    out_.steps.push_back({entry.part, part.heir, static_cast<float>(last_error_)});
     const double reach = part.inherited + std::sqrt(std::max(0.0, near_[part.farthest].distance_sq));
     for (const std::uint32_t v : vertices_of(entry.part)) {
       Part& near = parts_[near_[v].part];
@@ -233,7 +233,7 @@ class Greedy {
     Part& heir = parts_[part.heir];
     heir.inherited = std::max(heir.inherited, reach);
     heir.stands += part.stands;
-    if (keep_area_ && out_.stays[part.heir] == 0) {
+    if (keep_area_ && out_.no_prune[part.heir] == 0) {
       heir.growth = heir.shape.growth_for(heir.stands);
     }
     part.alive = false;
@@ -242,7 +242,7 @@ class Greedy {
   }
 
   bool keep_area_;
-  ThinParts& out_;
+  PruneOrder& out_;
   const Task& task_;
   std::vector<Part> parts_;
   std::vector<Vec3d> positions_;             // where errors are judged
@@ -256,9 +256,9 @@ class Greedy {
   double last_error_ = 0;
 };
 
-Result<void> check(const Mesh& mesh, const ThinPartsOptions& options) {
+Result<void> check(const Mesh& mesh, const PruneOptions& options) {
   const auto wrong = [&](std::size_t size) { return size != 0 && size != mesh.vertex_count(); };
-  if (wrong(options.locked.size()) || wrong(options.weights.size())) {
+  if (wrong(options.no_move.size()) || wrong(options.weights.size())) {
     return fail(ErrorCode::bad_argument, "a list of vertices has another length than the mesh's vertices", "thin parts",
                 "give one entry a vertex");
   }
@@ -272,12 +272,12 @@ Result<void> check(const Mesh& mesh, const ThinPartsOptions& options) {
 
 }  // namespace
 
-Result<ThinParts> thin_parts(const Mesh& mesh, const ThinPartsOptions& options, Task task) {
+Result<PruneOrder> prune_order(const Mesh& mesh, const PruneOptions& options, Task task) {
   if (const Result<void> ok = check(mesh, options); !ok) return fail(ok.error());
   if (options.input != Input::valid) {
     if (const Result<void> ok = validate(mesh, task); !ok) return fail(ok.error());
   }
-  ThinParts out;
+  PruneOrder out;
   out.parts = parts_of(mesh);
   Greedy(mesh, options, out, task).run();
   if (task.cancelled()) return cancelled_error("thin parts");

@@ -1,4 +1,4 @@
-#include "lodestone/spatial/crossings.h"
+#include "lodestone/spatial/self_intersections.h"
 
 #include <algorithm>
 #include <limits>
@@ -44,15 +44,15 @@ bool share_a_vertex(const Triangle& a, const Triangle& b) {
 
 }  // namespace
 
-bool triangles_cross(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
+bool triangles_intersect(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
   const std::array<double, 3> a_to_b = sides_of(a, b);
   if (all_on_one_side(a_to_b)) return false;
   const std::array<double, 3> b_to_a = sides_of(b, a);
   return !all_on_one_side(b_to_a) && (sides_pass(a, b, a_to_b) || sides_pass(b, a, b_to_a));
 }
 
-std::vector<std::array<std::uint32_t, 2>> crossings(const Bvh& tree, std::span<const std::uint8_t> wanted,
-                                                    const Task& task) {
+std::vector<std::array<std::uint32_t, 2>> self_intersections(const Bvh& tree, std::span<const std::uint8_t> wanted,
+                                                             const Task& task) {
   using Pairs = std::vector<std::array<std::uint32_t, 2>>;
   const Surface& surface = tree.surface();
   Pairs pairs = parallel_reduce(
@@ -70,7 +70,7 @@ std::vector<std::array<std::uint32_t, 2>> crossings(const Bvh& tree, std::span<c
             // A pair of two that are wanted is told once.
             if (other == t || (other < t && (wanted.empty() || wanted[other] != 0))) continue;
             if (share_a_vertex(surface.triangles[t], surface.triangles[other])) continue;
-            if (!triangles_cross(corners, surface.corners(other))) continue;
+            if (!triangles_intersect(corners, surface.corners(other))) continue;
             const auto own = static_cast<std::uint32_t>(t);
             part.push_back({std::min(own, other), std::max(own, other)});
           }

@@ -1,4 +1,4 @@
-#include "lodestone/simplify/fit/fit.h"
+#include "lodestone/simplify/fit/tracked_level.h"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ Mesh collapsed(const Mesh& mesh, std::size_t triangles) {
 TEST(Fit, brings_a_level_nearer_and_keeps_it_whole) {
   const Mesh original = bumpy(60);
   const FitTarget target(original);
-  FittedLevel level(target, collapsed(original, 700), {});
+  TrackedLevel level(target, collapsed(original, 700), {});
   const double mean = level.mean();
   level.fit({}, {});
   EXPECT_LT(level.mean(), 0.9 * mean);
@@ -56,7 +56,7 @@ TEST(Fit, turns_no_face_inward) {
   const Mesh original = bumpy(60);
   const FitTarget target(original);
   for (const bool flips : {false, true}) {
-    FittedLevel level(target, collapsed(original, 700), {});
+    TrackedLevel level(target, collapsed(original, 700), {});
     for (int i = 1; i < 12; ++i) {
       FitOptions options;
       options.solves = 1 + (flips ? 1 : 0);
@@ -71,16 +71,16 @@ TEST(Fit, leaves_borders_seams_and_locked_vertices) {
   const Mesh original = test::with_uv_seam(test::grid(40, 0.1F));
   const FitTarget target(original);
   const Mesh start = collapsed(original, 300);
-  FittedLevel level(target, start, {});
+  TrackedLevel level(target, start, {});
   FitOptions options;
-  options.locked.assign(start.vertex_count(), 0);
-  for (std::size_t v = 0; v < start.vertex_count(); v += 3) options.locked[v] = 1;
+  options.no_move.assign(start.vertex_count(), 0);
+  for (std::size_t v = 0; v < start.vertex_count(); v += 3) options.no_move[v] = 1;
   level.fit(options, {});
   std::size_t moved = 0;
   for (std::size_t v = 0; v < start.vertex_count(); ++v) {
     const Vec3f &a = start.positions[v], &b = level.mesh().positions[v];
     const bool border = a.x <= 0 || a.x >= 1 || a.y <= 0 || a.y >= 1;
-    if (border || options.locked[v] != 0) {
+    if (border || options.no_move[v] != 0) {
       EXPECT_EQ(a, b) << v;
     }
     moved += a == b ? 0 : 1;
@@ -94,7 +94,7 @@ TEST(Fit, has_the_same_bytes_for_any_thread_count) {
   const auto with = [&](int threads) {
     const Task task = Task::root({}, threads);
     const FitTarget target(original, task);
-    FittedLevel level(target, start, task);
+    TrackedLevel level(target, start, task);
     level.fit({}, task);
     return level.mesh();
   };
@@ -107,10 +107,10 @@ TEST(Fit, has_the_same_bytes_for_any_thread_count) {
 TEST(Fit, measures_again_only_what_changed) {
   const Mesh original = bumpy(60);
   const FitTarget target(original);
-  const FittedLevel before(target, collapsed(original, 900), {});
+  const TrackedLevel before(target, collapsed(original, 900), {});
   Mesh changed = before.mesh();
   for (std::size_t v = 10; v < 14; ++v) changed.positions[v] = changed.positions[v] * 1.1F;
-  const FittedLevel anew(target, changed, {}), updated(target, changed, {}, &before);
+  const TrackedLevel anew(target, changed, {}), updated(target, changed, {}, &before);
   EXPECT_NEAR(anew.mean(), updated.mean(), 1e-9);
   EXPECT_EQ(anew.max(), updated.max());
   const auto a = anew.worst(), b = updated.worst();
@@ -122,21 +122,21 @@ TEST(Fit, looks_where_it_is_told) {
   Mesh level = original;
   for (Vec3f& p : level.positions) p.z *= 0.5F;  // the top and the bottom are a fourth farther in
   const FitTarget target(original);
-  FittedLevel known(target, level, {});
+  TrackedLevel known(target, level, {});
   const double before = known.max();
-  known.look_at(Vec3d{3, 3, 3}, true, {});
+  known.probe_error(Vec3d{3, 3, 3}, true, {});
   EXPECT_GT(known.max(), before) << "as far as it was told";
-  const std::vector<FittedLevel::Worst> worst = known.worst();
+  const std::vector<TriangleError> worst = known.worst();
   EXPECT_TRUE(std::any_of(worst.begin(), worst.end(), [&](const auto& w) { return w.partner == Vec3d{3, 3, 3}; }));
   const double now = known.max();
-  known.look_at(level.position(0), false, {});
+  known.probe_error(level.position(0), false, {});
   EXPECT_EQ(known.max(), now) << "nothing new there";
 }
 
 TEST(Fit, meets_the_volume) {
   const Mesh original = bumpy(60);
   const FitTarget target(original);
-  FittedLevel level(target, collapsed(original, 300), {});
+  TrackedLevel level(target, collapsed(original, 300), {});
   FitOptions options;
   options.solves = 2;
   level.fit(options, {});
@@ -151,7 +151,7 @@ TEST(Fit, meets_the_volume) {
 TEST(Fit, textures_do_not_swim) {
   Mesh original = test::with_uv_seam(test::grid(60, 0.2F));
   const FitTarget target(original);
-  FittedLevel level(target, collapsed(original, 400), {});
+  TrackedLevel level(target, collapsed(original, 400), {});
   level.fit({}, {});
   const Mesh& mesh = level.mesh();
   const AttributeStream* uv = find_stream(mesh, Semantic::uv);
@@ -175,7 +175,7 @@ TEST(Fit, textures_do_not_swim) {
 TEST(SplitWorst, adds_triangles_and_keeps_the_surface_whole) {
   const Mesh original = bumpy(60);
   const FitTarget target(original);
-  const FittedLevel level(target, collapsed(original, 700), {});
+  const TrackedLevel level(target, collapsed(original, 700), {});
   const SplitResult split = split_worst(level, 0.5, 40, false, {}, {}, {});
   EXPECT_GT(split.mesh.triangles.size(), level.mesh().triangles.size());
   EXPECT_LE(split.mesh.triangles.size(), level.mesh().triangles.size() + 41);
@@ -188,7 +188,7 @@ TEST(SplitWorst, of_neighbours_that_have_been_cut) {
   const Mesh original = bumpy(60);
   const FitTarget target(original);
   for (const std::size_t triangles : {200U, 700U, 2000U}) {
-    const FittedLevel level(target, collapsed(original, triangles), {});
+    const TrackedLevel level(target, collapsed(original, triangles), {});
     const SplitResult split = split_worst(level, 0, level.mesh().triangles.size(), false, {}, {}, {});
     EXPECT_GT(split.mesh.triangles.size(), level.mesh().triangles.size());
     const Topology t = topology_of(split.mesh);
@@ -201,7 +201,7 @@ TEST(Fit, of_nothing_much) {
   for (const Mesh& mesh : {test::tetrahedron(), test::cube(), test::grid(2), test::moebius(12), test::bow_tie(),
                            test::three_faces_on_an_edge(), test::soup(3, 30, 60)}) {
     const FitTarget target(mesh);
-    FittedLevel level(target, mesh, {});
+    TrackedLevel level(target, mesh, {});
     EXPECT_LT(level.max(), 1e-6);
     level.fit({}, {});
     EXPECT_EQ(level.mesh().triangles.size(), mesh.triangles.size());
@@ -209,7 +209,7 @@ TEST(Fit, of_nothing_much) {
   }
   const Mesh nothing;
   const FitTarget target(nothing);
-  FittedLevel level(target, nothing, {});
+  TrackedLevel level(target, nothing, {});
   level.fit({}, {});
   EXPECT_EQ(level.max(), 0);
 }

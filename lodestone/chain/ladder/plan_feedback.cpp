@@ -13,7 +13,7 @@ namespace {
 // A weighted run starts from a level of so many times the triangles: it is as good as the original there, and faster.
 constexpr std::size_t kFiner = 6;
 
-// Larger levels stay as they are: ties take some 300 bytes a triangle, three times over.
+// Larger levels stay as they are: correspondences take some 300 bytes a triangle, three times over.
 constexpr std::size_t kMostTriangles = std::size_t{1} << 21;
 
 // Distances in mesh space and in the scene differ by a factor alone.
@@ -40,31 +40,31 @@ bool has_many_slivers(const Mesh& mesh) {
   return count > kMany;
 }
 
-std::vector<Vec3f> places_of(const Mesh& mesh, const std::vector<std::uint8_t>& marked) {
-  std::vector<Vec3f> places;
+std::vector<Vec3f> positions_of(const Mesh& mesh, const std::vector<std::uint8_t>& marked) {
+  std::vector<Vec3f> positions;
   for (std::size_t v = 0; v < marked.size(); ++v) {
-    if (marked[v] != 0) places.push_back(mesh.positions[v]);
+    if (marked[v] != 0) positions.push_back(mesh.positions[v]);
   }
-  std::sort(places.begin(), places.end(), before);
-  return places;
+  std::sort(positions.begin(), positions.end(), before);
+  return positions;
 }
 
 }  // namespace
 
-bool CollapsePlan::can_be_shaped() const {
+bool CollapsePlan::can_take_feedback() const {
   for (std::size_t m = 0; m < logs_.size(); ++m) {
-    if (can_be_shaped(m)) return true;
+    if (can_take_feedback(m)) return true;
   }
   return false;
 }
 
-bool CollapsePlan::can_be_shaped(std::size_t m) const {
+bool CollapsePlan::can_take_feedback(std::size_t m) const {
   return logs_[m].start_triangles > 0 && untouched_.empty() && !prunes_ && is_similarity(placings_[m]) &&
          std::isfinite(bounds_of(mesh(m)).diagonal()) && !has_many_slivers(mesh(m));
 }
 
-Result<Mesh> CollapsePlan::shaped(std::size_t m, Mesh plain, Effort effort, double goal, FitTargets& targets,
-                                  const Task& task) const {
+Result<Mesh> CollapsePlan::mesh_with_feedback(std::size_t m, Mesh plain, Effort effort, double goal,
+                                              FitTargets& targets, const Task& task) const {
   const CollapseLog& log = logs_[m];
   const std::size_t triangles = plain.triangles.size();
   if (triangles == 0 || triangles >= log.start_triangles || triangles > kMostTriangles) return plain;
@@ -89,22 +89,22 @@ Result<Mesh> CollapsePlan::shaped(std::size_t m, Mesh plain, Effort effort, doub
     finer = std::move(replayed->mesh);
   }
   const double scale = length(placings_[m].direction({1, 0, 0}));
-  const ShapeSource source{
+  const FeedbackSource source{
       finer.triangles.empty() ? mesh(m) : finer, *target, options, goal / scale, reference ? &*reference : nullptr,
-      places_of(mesh(m), options.locked)};
-  Result<Mesh> made = shape_level(source, std::move(plain), effort, task);
+      positions_of(mesh(m), options.no_move)};
+  Result<Mesh> made = apply_feedback(source, std::move(plain), effort, task);
   if (made) finish(*made);
   return made;
 }
 
-Result<Model> CollapsePlan::shaped_after(std::size_t count, Effort effort, double goal, FitTargets& targets,
-                                         Task task) const {
+Result<Model> CollapsePlan::model_with_feedback(std::size_t count, Effort effort, double goal, FitTargets& targets,
+                                                Task task) const {
   Result<Model> model = model_after(count, task.part(0.1));
   if (!model || effort == Effort::fast) return model;
   const double share = 0.9 / static_cast<double>(std::max<std::size_t>(1, logs_.size()));
   for (std::size_t m = 0; m < logs_.size(); ++m) {
-    if (!can_be_shaped(m)) continue;
-    Result<Mesh> made = shaped(m, std::move(model->meshes[m]), effort, goal, targets, task.part(share));
+    if (!can_take_feedback(m)) continue;
+    Result<Mesh> made = mesh_with_feedback(m, std::move(model->meshes[m]), effort, goal, targets, task.part(share));
     if (!made) return fail(made.error());
     model->meshes[m] = std::move(*made);
   }

@@ -1,8 +1,8 @@
-// How far the surface drifts from the original: each vertex carries an estimate, which every collapse adds to.
+// Accumulated errors: how far the surface has come from the original: each vertex carries an estimate, which every collapse adds to.
 //
 // A collapse moves the surface by how far the new vertex lies from the old triangles, and the old vertices from the new
-// triangles. To each distance comes the drift that was there before, interpolated. Costs weigh by area, so they are
-// blind to thin tips, and memoryless, so they forget what was lost before; the drift sees both.
+// triangles. To each distance comes the accumulated error that was there before, interpolated. Costs weigh by area, so they are
+// blind to thin tips, and memoryless, so they forget what was lost before; the accumulated error sees both.
 #include <algorithm>
 #include <cmath>
 
@@ -28,7 +28,7 @@ Float4 fill(float f) { return Float4{f, f, f, f}; }
 // Four leaves side by side.
 struct Leaves {
   Vec4 a, b, n;
-  Float4 drift_a, drift_b, inverse;  // inverse of the squared length of n
+  Float4 error_a, error_b, inverse;  // inverse of the squared length of n
 
   explicit Leaves(const Leaf* leaf) {
     Float4 rows[3][4];
@@ -38,9 +38,9 @@ struct Leaves {
     }
     for (auto& r : rows) transpose(r[0], r[1], r[2], r[3]);
     a = {rows[0][0], rows[0][1], rows[0][2]};
-    drift_a = rows[0][3];
+    error_a = rows[0][3];
     b = {rows[1][0], rows[1][1], rows[1][2]};
-    drift_b = rows[1][3];
+    error_b = rows[1][3];
     n = {rows[2][0], rows[2][1], rows[2][2]};
     inverse = rows[2][3];
   }
@@ -48,30 +48,30 @@ struct Leaves {
 
 // The nearest so far, lane by lane.
 struct Nearest {
-  Float4 squared = fill(3e38F), drift{};
+  Float4 squared = fill(3e38F), accumulated{};
 
   void offer(Float4 d, Float4 at) {
     const Mask nearer = d < squared;
     squared = nearer ? d : squared;
-    drift = nearer ? at : drift;
+    accumulated = nearer ? at : accumulated;
   }
   float total(float rounding) const {
     std::size_t best = 0;
     for (std::size_t i = 1; i < 4; ++i) best = squared[i] < squared[best] ? i : best;
     const float distance = std::sqrt(squared[best]);
-    return (distance > rounding ? distance : 0) + drift[best];
+    return (distance > rounding ? distance : 0) + accumulated[best];
   }
   bool found() const { return std::min({squared[0], squared[1], squared[2], squared[3]}) < 3e38F; }
 };
 
-// Offers the nearest point of the segment from s to s + e, with drifts at its ends.
-void offer_segment(Nearest& nearest, const Vec4& from_s, const Vec4& e, Float4 drift_s, Float4 drift_e) {
+// Offers the nearest point of the segment from s to s + e, with accumulated errors at its ends.
+void offer_segment(Nearest& nearest, const Vec4& from_s, const Vec4& e, Float4 error_s, Float4 error_e) {
   const Float4 l = dot(e, e), zero{}, one = fill(1);
   Float4 t = dot(from_s, e) / (l + fill(1e-30F));
   t = t < zero ? zero : t;
   t = t > one ? one : t;
   const Vec4 away = from_s - scaled(e, t);
-  nearest.offer(dot(away, away), drift_s + (drift_e - drift_s) * t);
+  nearest.offer(dot(away, away), error_s + (error_e - error_s) * t);
 }
 
 }  // namespace
@@ -80,44 +80,44 @@ void FanDistance::pad() {
   while (size_ % 4 != 0) add(leaf_[0]);
 }
 
-bool FanDistance::drift_above(Vec3f q, float apex_drift, float& drift) const {
+bool FanDistance::error_above(Vec3f q, float apex_error, float& accumulated) const {
   const Vec4 p{fill(q.x), fill(q.y), fill(q.z)};
-  const Float4 zero{}, apex = fill(apex_drift);
+  const Float4 zero{}, apex = fill(apex_error);
   Nearest nearest;
   for (std::size_t i = 0; i < size_; i += 4) {
     const Leaves l(&leaf_[i]);
     const Float4 u = dot(cross(p, l.b), l.n) * l.inverse, v = dot(cross(l.a, p), l.n) * l.inverse;
     const Float4 w = 1.0F - u - v, h = dot(l.n, p);
     const Mask inside = (u >= zero) & (v >= zero) & (w >= zero) & (l.inverse > zero);
-    nearest.offer(inside ? h * h * l.inverse : fill(3e38F), apex * w + l.drift_a * u + l.drift_b * v);
+    nearest.offer(inside ? h * h * l.inverse : fill(3e38F), apex * w + l.error_a * u + l.error_b * v);
   }
   if (!nearest.found()) return false;
-  drift = nearest.total(rounding_);
+  accumulated = nearest.total(rounding_);
   return true;
 }
 
-float FanDistance::drift_at_edges(Vec3f q, float apex_drift) const {
+float FanDistance::error_at_edges(Vec3f q, float apex_error) const {
   const Vec4 p{fill(q.x), fill(q.y), fill(q.z)};
-  const Float4 apex = fill(apex_drift);
+  const Float4 apex = fill(apex_error);
   Nearest nearest;
   for (std::size_t i = 0; i < size_; i += 4) {
     const Leaves l(&leaf_[i]);
-    offer_segment(nearest, p, l.a, apex, l.drift_a);
-    offer_segment(nearest, p, l.b, apex, l.drift_b);
-    offer_segment(nearest, p - l.a, l.b - l.a, l.drift_a, l.drift_b);
+    offer_segment(nearest, p, l.a, apex, l.error_a);
+    offer_segment(nearest, p, l.b, apex, l.error_b);
+    offer_segment(nearest, p - l.a, l.b - l.a, l.error_a, l.error_b);
   }
   return nearest.total(rounding_);
 }
 
-float FanDistance::drift_at(Vec3f q, float apex_drift) const {
-  float drift = 0;
-  return drift_above(q, apex_drift, drift) ? drift : drift_at_edges(q, apex_drift);
+float FanDistance::error_at(Vec3f q, float apex_error) const {
+  float accumulated = 0;
+  return error_above(q, apex_error, accumulated) ? accumulated : error_at_edges(q, apex_error);
 }
 
 // About how far from the input the surface is after a collapse.
-float Sweeper::drift_after(const Candidate& candidate, float enough) {
+float Sweeper::error_after(const Candidate& candidate, float enough) {
   const std::vector<Vec3f>& positions = state_.positions;
-  const std::vector<float>& drift = state_.drift;
+  const std::vector<float>& accumulated = state_.accumulated_error;
   const std::uint32_t k = candidate.kept, r = candidate.removed;
   const Vec3f from_k = candidate.position - positions[k], from_r = candidate.position - positions[r];
   const auto load = [&](std::uint32_t v) {
@@ -125,7 +125,7 @@ float Sweeper::drift_after(const Candidate& candidate, float enough) {
     for (const Corner& c : v == k ? kept_ : removed_) {
       const TriangleNormal& t = state_.normals[c.triangle];
       const float inverse = t.inverse_root * t.inverse_root;
-      fan_.add({positions[c.a] - positions[v], drift[c.a], positions[c.b] - positions[v], drift[c.b], t.n,
+      fan_.add({positions[c.a] - positions[v], accumulated[c.a], positions[c.b] - positions[v], accumulated[c.b], t.n,
                 inverse * inverse});
     }
     fan_.pad();
@@ -136,11 +136,11 @@ float Sweeper::drift_after(const Candidate& candidate, float enough) {
   const Vec3f from_near = nearer_k ? from_k : from_r, from_far = nearer_k ? from_r : from_k;
   float most = 0;
   load(near);
-  const bool above = fan_.drift_above(from_near, drift[near], most);
-  if (!above) most = fan_.drift_at_edges(from_near, drift[near]);
+  const bool above = fan_.error_above(from_near, accumulated[near], most);
+  if (!above) most = fan_.error_at_edges(from_near, accumulated[near]);
   if (!above || most > enough) {
     load(far);
-    most = std::min(most, fan_.drift_at(from_far, drift[far]));
+    most = std::min(most, fan_.error_at(from_far, accumulated[far]));
   }
   fan_.clear();
   for (std::size_t i = 0; i < corners_.size(); ++i) {
@@ -150,7 +150,7 @@ float Sweeper::drift_after(const Candidate& candidate, float enough) {
   }
   fan_.pad();
   for (const std::uint32_t v : {k, r}) {
-    most = std::max(most, drift[v] + fan_.drift_at(positions[v] - candidate.position, 0));
+    most = std::max(most, accumulated[v] + fan_.error_at(positions[v] - candidate.position, 0));
   }
   return most;
 }

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "lodestone/base/parallel.h"
-#include "lodestone/voxel/column_raster_detail.h"
+#include "lodestone/voxel/z_crossings_detail.h"
 
 namespace lodestone::voxel::detail {
 
