@@ -13,6 +13,7 @@
 #include "app/output/text.h"
 #include "lodestone/base/file.h"
 #include "lodestone/io/content.h"
+#include "lodestone/io/gltf/levels.h"
 #include "lodestone/io/read.h"
 #include "lodestone/io/write.h"
 
@@ -73,7 +74,7 @@ bool is_level_pattern(const fs::path& output) {
 Result<void> check_level(const std::string& input, std::size_t level) {
   if (level == 0) return {};
   if (const auto there = InputFile::open(input); !there) return fail(there.error());
-  const std::uint64_t levels = levels_in_file(input);
+  const std::uint64_t levels = io::levels_in_file(input);
   if (levels == 1) {
     return fail(ErrorCode::bad_argument, "--level is for files with levels (MSFT_lod), this one has none", input,
                 "make them with 'lod build'");

@@ -33,7 +33,7 @@ OptionGroup voxel_method_group() {
   return group;
 }
 
-Result<std::optional<VoxelMethod>> voxel_method(const Arguments& arguments) {
+Result<std::optional<chain::VoxelLadderOptions>> voxel_method(const Arguments& arguments) {
   const bool voxel = arguments.text("--method") == "voxel";
   if (!voxel) {
     for (const OptionSpec& option : voxel_method_group().options) {
@@ -41,25 +41,25 @@ Result<std::optional<VoxelMethod>> voxel_method(const Arguments& arguments) {
       return fail(ErrorCode::bad_argument, fmt::format("{} is for --method voxel", option.name), {},
                   "add --method voxel");
     }
-    return std::optional<VoxelMethod>();
+    return std::optional<chain::VoxelLadderOptions>();
   }
-  VoxelMethod method;
-  method.ladder.then_collapse = arguments.has("--then-collapse");
+  chain::VoxelLadderOptions method;
+  method.then_collapse = arguments.has("--then-collapse");
   if (arguments.has("--resolution")) {
-    if (!method.ladder.then_collapse) {
+    if (!method.then_collapse) {
       return fail(ErrorCode::bad_argument, "--resolution is for --then-collapse: levels take theirs from the targets");
     }
     const Result<std::uint32_t> resolution = resolution_of(arguments);
     if (!resolution) return fail(resolution.error());
-    method.ladder.resolution = *resolution;
+    method.resolution = *resolution;
   }
   const Result<chain::VoxelOptions> options = voxel_options(arguments, {}, {});
   if (!options) return fail(options.error());
-  method.ladder.voxel = *options;
-  const Result<BakePlan> bake = bake_plan(arguments);
-  if (!bake) return fail(bake.error());
-  method.bake = *bake;
-  return std::optional<VoxelMethod>(method);
+  method.voxel = *options;
+  Result<chain::SurfaceAttributeOptions> attributes = surface_attributes(arguments);
+  if (!attributes) return fail(attributes.error());
+  method.attributes = std::move(*attributes);
+  return std::optional<chain::VoxelLadderOptions>(method);
 }
 
 }  // namespace lodestone::app

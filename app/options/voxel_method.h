@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "app/options/bake_run.h"
 #include "app/options/command_line.h"
 #include "app/options/shared_options.h"
 #include "app/options/spec.h"
+#include "app/options/surface_attributes.h"
 #include "lodestone/base/result.h"
 #include "lodestone/chain/voxels/voxel_ladder.h"
 
@@ -18,10 +18,6 @@ namespace lodestone::app {
 OptionGroup voxel_method_group();
 
 /// Nothing where levels are made by edge collapse. Errors: bad_argument (options of one method with the other).
-struct VoxelMethod {
-  chain::VoxelLadderOptions ladder;
-  BakePlan bake;
-};
-Result<std::optional<VoxelMethod>> voxel_method(const Arguments& arguments);
+Result<std::optional<chain::VoxelLadderOptions>> voxel_method(const Arguments& arguments);
 
 }  // namespace lodestone::app

@@ -103,26 +103,6 @@ Json directed_json(const measure::DirectedDistance& d) {
           {"normal_degrees", d.normal_degrees}};
 }
 
-// The JSON text of a glTF or GLB; empty when it is neither.
-std::string gltf_text(const std::filesystem::path& path) {
-  Result<InputFile> file = InputFile::open(path);
-  if (!file) return {};
-  std::array<std::byte, 20> head{};
-  const Result<std::size_t> got = file->read(head);
-  if (!got) return {};
-  std::uint64_t size = file->size();
-  if (*got == head.size() && std::memcmp(head.data(), "glTF", 4) == 0) {
-    std::uint32_t chunk = 0;
-    std::memcpy(&chunk, head.data() + 12, sizeof chunk);
-    size = std::min<std::uint64_t>(chunk, size - head.size());
-  } else if (!file->seek(0)) {
-    return {};
-  }
-  std::string text(static_cast<std::size_t>(size), '\0');
-  const Result<std::size_t> read = file->read(std::as_writable_bytes(std::span(text)));
-  return read && *read == text.size() ? text : std::string();
-}
-
 }  // namespace
 
 std::string to_json(const BuildReport& report) { return text_of(build_json(report)); }
@@ -380,19 +360,6 @@ std::string to_json(const SampleReport& report) {
   json["bytes"] = report.bytes;
   json["seconds"] = report.seconds;
   return text_of(json);
-}
-
-std::uint64_t levels_in_file(const std::filesystem::path& path) {
-  const Json document = Json::parse(gltf_text(path), nullptr, false);
-  if (!document.is_object() || !document.contains("nodes") || !document["nodes"].is_array()) return 1;
-  std::uint64_t levels = 1;
-  for (const Json& node : document["nodes"]) {
-    const Json::json_pointer ids("/extensions/MSFT_lod/ids");
-    if (node.is_object() && node.contains(ids) && node[ids].is_array()) {
-      levels = std::max<std::uint64_t>(levels, node[ids].size() + 1);
-    }
-  }
-  return levels;
 }
 
 }  // namespace lodestone::app

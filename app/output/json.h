@@ -1,7 +1,6 @@
 // Reports as JSON. Field names are promises to scripts: they may be added to, never changed.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,8 +19,5 @@ std::string to_json(const SheetReport& report);
 std::string to_json(const VoxelReport& report);
 std::string to_json(const ConvertReport& report);
 std::string to_json(const SampleReport& report);
-
-/// Levels of a ladder (MSFT_lod) in a glTF or GLB, with level 0; 1 for anything else.
-std::uint64_t levels_in_file(const std::filesystem::path& path);
 
 }  // namespace lodestone::app

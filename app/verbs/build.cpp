@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "app/input.h"
-#include "app/options/bake_run.h"
+#include "app/options/surface_attributes.h"
 #include "app/output/json.h"
 #include "app/output/table.h"
 #include "app/output/text.h"
@@ -17,8 +17,8 @@
 #include "app/verbs/verify.h"
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
+#include "lodestone/core/flatten.h"
 #include "lodestone/io/images/decode.h"
-#include "lodestone/io/plain/flatten.h"
 
 namespace lodestone::app {
 namespace fs = std::filesystem;
@@ -79,46 +79,17 @@ Result<chain::LadderOptions> prepare_job(const BuildPlan& plan, Model& model, Bu
   return options;
 }
 
-// In one file all levels choose from the original's materials, and its texture coordinates say where the origin is.
-void share_materials(Ladder& ladder) {
-  std::vector<Material>& all = ladder.original.materials;
-  for (std::size_t i = 1; i < ladder.levels.size(); ++i) {
-    Model& model = ladder.levels[i].model;
-    if (model.materials.empty()) continue;
-    const auto first = static_cast<std::uint32_t>(all.size());
-    all.insert(all.end(), model.materials.begin(), model.materials.end());
-    for (Mesh& mesh : model.meshes) {
-      for (FaceGroup& group : mesh.groups) group.material += group.material == kNone ? 0 : first;
-      if (model.uv_origin_top == ladder.original.uv_origin_top) continue;
-      for (AttributeStream& stream : mesh.attributes) {
-        if (stream.semantic != Semantic::uv) continue;
-        auto& uv = std::get<std::vector<float>>(stream.values);
-        for (std::size_t k = 1; k < uv.size(); k += stream.components) uv[k] = 1 - uv[k];
-      }
-    }
-    model.uv_origin_top = ladder.original.uv_origin_top;
-  }
-  for (std::size_t i = 1; i < ladder.levels.size(); ++i) {
-    if (!ladder.levels[i].model.materials.empty()) ladder.levels[i].model.materials = all;
-  }
-}
-
 // By voxels the original is one mesh, as each level is.
 Result<chain::LadderResult> make_levels(Model model, const BuildPlan& plan, const chain::LadderOptions& options,
                                         bool one_file, BuildReport& report, const Console& console, const Task& task) {
   if (!plan.voxel) return chain::build_ladder(std::move(model), options, task);
   std::vector<std::string> warnings;
-  Model one = io::flattened(std::move(model), warnings);
-  const Result<AttributeSource> source = AttributeSource::create(one, plan.voxel->bake, warnings, task.part(0.1));
-  if (!source) return fail(source.error());
-  Result<chain::LadderResult> result =
-      chain::build_voxel_ladder(std::move(one), options, plan.voxel->ladder, task.part(0.7));
+  Model one = flattened(std::move(model), warnings);
+  const Result<void> decoded = decode_for(plan.voxel->attributes, one, warnings, task.part(0.1));
+  if (!decoded) return fail(decoded.error());
+  Result<chain::LadderResult> result = chain::build_voxel_ladder(std::move(one), options, *plan.voxel, task.part(0.9));
   if (!result) return result;
   warnings.insert(warnings.end(), result->warnings.begin(), result->warnings.end());
-  for (std::size_t level = 1; level < result->ladder.levels.size(); ++level) {
-    const Result<void> added = source->add_to(result->ladder.levels[level].model, level, task);
-    if (!added) return fail(added.error());
-  }
   if (one_file) share_materials(result->ladder);
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
   for (const std::string& warning : warnings) console.note(fmt::format("{}: {}", report.input, warning));

@@ -62,7 +62,7 @@ Result<BuildPlan> build_plan(const Arguments& arguments) {
   Result<VolumeRequest> volume = volume_request(arguments);
   if (!volume) return fail(volume.error());
   plan.volume = std::move(*volume);
-  const Result<std::optional<VoxelMethod>> voxel = voxel_method(arguments);
+  const Result<std::optional<chain::VoxelLadderOptions>> voxel = voxel_method(arguments);
   if (!voxel) return fail(voxel.error());
   plan.voxel = *voxel;
   plan.effort = effort_of(arguments, chain::Effort::normal);

@@ -27,12 +27,12 @@ struct BuildPlan {
   ConstraintPlan constraints;
   measure::DistanceOptions distance;
   VolumeRequest volume;
-  std::optional<VoxelMethod> voxel;           ///< --method voxel
-  bool force = false;                         ///< --force
-  bool verify = false;                        ///< --verify
-  bool image_error = false;                   ///< --image-error
-  bool report = false;                        ///< --report
-  std::vector<report::ReportOption> options;  ///< all that was asked, for the report
+  std::optional<chain::VoxelLadderOptions> voxel;  ///< --method voxel
+  bool force = false;                              ///< --force
+  bool verify = false;                             ///< --verify
+  bool image_error = false;                        ///< --image-error
+  bool report = false;                             ///< --report
+  std::vector<report::ReportOption> options;       ///< all that was asked, for the report
   io::Compression compression = io::Compression::none;
 };
 

@@ -8,6 +8,7 @@
 #include "lodestone/base/file.h"
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
+#include "lodestone/io/gltf/levels.h"
 
 namespace lodestone::app {
 namespace {
@@ -41,7 +42,7 @@ Result<void> plan_levels(const Arguments& arguments, Plan& plan) {
                   "leave one of them out");
     }
     if (const Result<InputFile> there = InputFile::open(plan.input); !there) return fail(there.error());
-    plan.levels = levels_in_file(plan.input);
+    plan.levels = io::levels_in_file(plan.input);
     plan.read.levels = false;
     if (plan.levels > 1) return {};
     return fail(ErrorCode::bad_argument, "{level} is for files with levels (MSFT_lod), this one has none", plan.input,

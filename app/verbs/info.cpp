@@ -9,6 +9,7 @@
 #include "app/output/text.h"
 #include "app/verbs/verbs.h"
 #include "lodestone/base/units.h"
+#include "lodestone/io/gltf/levels.h"
 #include "lodestone/measure/shape.h"
 
 namespace lodestone::app {
@@ -166,7 +167,7 @@ Result<ExitCode> run_info(const Arguments& arguments, Console& console) {
   if (const Result<void> examined = examine(report, *model, console.task().part(0.5, "counting")); !examined) {
     return fail(examined.error());
   }
-  report.levels = levels_in_file(report.path);
+  report.levels = io::levels_in_file(report.path);
   arguments.has("--json") ? console.result(to_json(report)) : console.table(table_of(report));
   return ExitCode::done;
 }

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "app/options/bake_run.h"
 #include "app/options/shared_options.h"
+#include "app/options/surface_attributes.h"
 #include "app/options/voxel_options.h"
 #include "app/verbs/verbs.h"
 #include "app/verbs/voxel_run.h"
@@ -58,8 +58,8 @@ Result<ExitCode> run_remesh(const Arguments& arguments, Console& console) {
   if (!request) return fail(request.error());
   const Result<LengthRules> lengths = length_rules(arguments);
   if (!lengths) return fail(lengths.error());
-  const Result<BakePlan> bake = bake_plan(arguments);
-  if (!bake) return fail(bake.error());
+  const Result<chain::SurfaceAttributeOptions> attributes = surface_attributes(arguments);
+  if (!attributes) return fail(attributes.error());
   Stopwatch watch;
   VoxelReport report;
   Result<Model> model = read_solid(*request, report, console);
@@ -79,7 +79,9 @@ Result<ExitCode> run_remesh(const Arguments& arguments, Console& console) {
   report.method = result->level.method;
   report.shortfall = result->shortfall;
   if (result->measured) report.error = result->level.error;
-  const Result<AttributeSource> source = AttributeSource::create(*model, *bake, result->warnings, console.task());
+  const Result<void> decoded = decode_for(*attributes, *model, result->warnings, console.task());
+  if (!decoded) return fail(decoded.error());
+  const Result<chain::AttributeSource> source = chain::AttributeSource::create(*model, *attributes, console.task());
   if (!source) return fail(source.error());
   if (const Result<void> added = source->add_to(result->level.model, 0, console.task()); !added) {
     return fail(with_place(added.error(), report.input));

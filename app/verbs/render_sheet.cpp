@@ -12,6 +12,7 @@
 #include "lodestone/base/file.h"
 #include "lodestone/base/stopwatch.h"
 #include "lodestone/base/units.h"
+#include "lodestone/io/gltf/levels.h"
 #include "lodestone/io/images/encode.h"
 #include "lodestone/measure/distance.h"
 #include "lodestone/report/contact_sheet.h"
@@ -83,7 +84,7 @@ Result<std::vector<Source>> sources_of(const std::vector<std::string>& inputs) {
   std::vector<Source> sources;
   if (inputs.size() == 1) {
     if (const auto there = InputFile::open(inputs.front()); !there) return fail(there.error());
-    const std::uint64_t levels = levels_in_file(inputs.front());
+    const std::uint64_t levels = io::levels_in_file(inputs.front());
     if (levels < 2) {
       return fail(ErrorCode::bad_argument, "has no levels (MSFT_lod) for a sheet", inputs.front(),
                   "make them with 'lod build', or name the original and its levels as files");

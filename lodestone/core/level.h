@@ -50,4 +50,8 @@ struct Ladder {
   const Model& model(std::size_t level) const { return level == 0 ? original : levels[level].model; }
 };
 
+/// For ladders that come into one file: all levels choose from the original's materials, to which theirs are added, and
+/// have its convention for the origin of texture coordinates. O(levels' texture coordinates and materials).
+void share_materials(Ladder& ladder);
+
 }  // namespace lodestone

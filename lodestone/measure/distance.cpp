@@ -49,6 +49,18 @@ Result<Distance> Reference::distance_to(const Model& level, const DistanceOption
   return out;
 }
 
+// The limit is that of independent samples; stratified ones do better.
+Result<Distance> Reference::steady_distance_to(const Model& level, const DistanceOptions& options, Task task) const {
+  Result<Distance> d = distance_to(level, options, task.part(0.5));
+  constexpr double kSteady = 0.01, kNothing = 1e-7;
+  if (!d || d->mean <= kNothing * d->diagonal) return d;
+  const double spread = d->rms / d->mean;
+  if (spread * spread - 1 <= kSteady * kSteady * static_cast<double>(d->samples)) return d;
+  DistanceOptions more = options;
+  more.samples *= 4;
+  return distance_to(level, more, task.part(0.5));
+}
+
 Result<Distance> distance(const Model& a, const Model& b, const DistanceOptions& options, Task task) {
   const Result<Reference> reference = Reference::create(a, task.part(0.1));
   if (!reference) return fail(reference.error());

@@ -10,20 +10,6 @@ using measure::Reference;
 
 namespace {
 
-// Where a few spots make the whole mean, it depends on how many samples hit them: four times as many are taken then.
-// The limit is a relative standard error of 1 % (that of independent samples; stratified ones do better).
-Result<measure::Distance> measure_steadily(const measure::Reference& reference, const Model& model,
-                                           const measure::DistanceOptions& options, const Task& task) {
-  Result<measure::Distance> d = reference.distance_to(model, options, task.part(0.5));
-  constexpr double kSteady = 0.01, kNothing = 1e-7;
-  if (!d || d->mean <= kNothing * d->diagonal) return d;
-  const double spread = d->rms / d->mean;
-  if (spread * spread - 1 <= kSteady * kSteady * static_cast<double>(d->samples)) return d;
-  measure::DistanceOptions more = options;
-  more.samples *= 4;
-  return reference.distance_to(model, more, task.part(0.5));
-}
-
 const char* method_of(Effort effort) {
   if (effort == Effort::fast) return "edge collapse";
   return effort == Effort::normal ? "edge collapse, weighted by its error" : "edge collapse, fitted by its error";
@@ -78,7 +64,7 @@ bool LevelMaker::is_better(const MeasuredLevel& made, const MeasuredLevel& plain
 Result<MeasuredLevel> LevelMaker::measured(MeasuredLevel cut, std::size_t prefix, Model model, Effort effort,
                                            const Task& task) const {
   const Stopwatch measuring;
-  const Result<measure::Distance> d = measure_steadily(reference_, model, distance_, task);
+  const Result<measure::Distance> d = reference_.steady_distance_to(model, distance_, task);
   if (!d) return fail(d.error());
   cut.prefix = prefix;
   cut.measure_seconds += measuring.total();

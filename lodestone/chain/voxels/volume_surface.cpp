@@ -22,14 +22,14 @@
 #include "lodestone/core/validate.h"
 #include "lodestone/voxel/filter.h"
 #include "lodestone/voxel/isosurface.h"
+#include "lodestone/voxel/labels.h"
+#include "lodestone/voxel/otsu.h"
 
 namespace lodestone::chain {
 
 namespace {
 
 constexpr std::size_t kVoxelsAtOnce = std::size_t{1} << 20;
-constexpr std::size_t kBins = 1024;
-constexpr std::size_t kMostLabels = 4096;
 
 struct Range {
   double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -107,114 +107,16 @@ Vec3d blur_of(const VolumeSurfaceOptions& options, const VoxelGrid& grid) {
   return {options.smooth / each.x, options.smooth / each.y, options.smooth / each.z};
 }
 
-// Boxes of labels, in the order of their numbers.
-struct Box {
-  std::array<std::uint32_t, 3> low{kNone, kNone, kNone}, high{};
-};
-
-// How values differ from those before them in their rows, where neither is 0.
-struct Steps {
-  std::uint64_t pairs = 0, steps = 0;
-  double sum = 0;  // of the steps' sizes
-
-  void add(double before, double value) {
-    if (before == 0) return;
-    ++pairs;
-    if (value == before) return;
-    ++steps;
-    sum += std::abs(value - before);
-  }
-};
-
-// Labels are alike in whole regions, and their numbers say nothing: grey values differ nearly everywhere, by a little
-// (in scans 85 of 100 neighbours do, by 2 to 9 % of the range; random numbers by 33 %).
-Result<void> check_labels(const std::map<std::int64_t, Box>& boxes, const Steps& steps) {
-  constexpr std::size_t kFewLabels = 32;
-  if (boxes.size() <= kFewLabels || 2 * steps.steps <= steps.pairs) return {};
-  const auto range = static_cast<double>(boxes.rbegin()->first - boxes.begin()->first);
-  if (steps.sum > 0.2 * range * static_cast<double>(steps.steps)) return {};
-  return fail(ErrorCode::bad_argument,
-              fmt::format("holds {} different values, and {} of neighbours differ by a little: these are grey values, "
-                          "not labels",
-                          with_separators(boxes.size()),
-                          percent(static_cast<double>(steps.steps) / static_cast<double>(steps.pairs))),
-              {}, "leave --labels out, and use --iso");
-}
-
-template <class T>
-Result<std::map<std::int64_t, Box>> label_boxes(const VolumeView<T>& volume, const Task& task) {
-  std::map<std::int64_t, Box> boxes;
-  const auto& size = volume.grid.size;
-  std::int64_t last = 0;
-  Box* box = nullptr;
-  Steps steps;
-  for (std::uint32_t z = 0; z < size[2]; ++z) {
-    if (task.cancelled()) return cancelled_error("reading labels");
-    for (std::uint32_t y = 0; y < size[1]; ++y) {
-      double before = 0;
-      for (std::uint32_t x = 0; x < size[0]; ++x) {
-        const auto read = static_cast<double>(volume.at(x, y, z));
-        const double value = std::isfinite(read) ? read : 0;
-        if (value != 0) steps.add(before, value);
-        before = value;
-        if (value == 0) continue;
-        if (value != std::floor(value) || std::abs(value) > 1e9) {
-          return fail(ErrorCode::bad_argument, fmt::format("{} is no label: labels are whole numbers", value), {},
-                      "leave --labels out, and use --iso");
-        }
-        const auto label = static_cast<std::int64_t>(value);
-        if (box == nullptr || label != last) {
-          box = &boxes[label];
-          last = label;
-          if (boxes.size() > kMostLabels) {
-            return fail(ErrorCode::bad_argument, fmt::format("has more than {} labels", kMostLabels), {},
-                        "leave --labels out, and use --iso");
-          }
-        }
-        const std::uint32_t at[3] = {x, y, z};
-        for (std::size_t k = 0; k < 3; ++k) {
-          box->low[k] = std::min(box->low[k], at[k]);
-          box->high[k] = std::max(box->high[k], at[k]);
-        }
-      }
-    }
-  }
-  if (const Result<void> ok = check_labels(boxes, steps); !ok) return fail(ok.error());
-  return boxes;
-}
-
-// One label as a volume of its own: 255 where it is, one voxel more on every side that has one.
-template <class T>
-ScalarVolume<std::uint8_t> mask_of(const VolumeView<T>& volume, const Box& box, std::int64_t label) {
-  ScalarVolume<std::uint8_t> mask;
-  const Vec3d spacing = volume.grid.spacing;
-  mask.grid.spacing = spacing;
-  for (std::size_t k = 0; k < 3; ++k) {
-    mask.grid.size[k] = box.high[k] - box.low[k] + 1;
-    mask.grid.origin[k] = volume.grid.origin[k] + box.low[k] * spacing[k];
-  }
-  mask.values.resize(static_cast<std::size_t>(mask.grid.count()));
-  std::size_t i = 0;
-  for (std::uint32_t z = box.low[2]; z <= box.high[2]; ++z) {
-    for (std::uint32_t y = box.low[1]; y <= box.high[1]; ++y) {
-      for (std::uint32_t x = box.low[0]; x <= box.high[0]; ++x, ++i) {
-        mask.values[i] = static_cast<double>(volume.at(x, y, z)) == static_cast<double>(label) ? 255 : 0;
-      }
-    }
-  }
-  return mask;
-}
-
 template <class T>
 Result<void> add_labels(const ScannedVolume& volume, std::span<const T> values, const VolumeSurfaceOptions& options,
                         Model& model, const Task& task) {
   const VolumeView<T> view{volume.header.grid, values};
-  const Result<std::map<std::int64_t, Box>> boxes = label_boxes(view, task);
+  const Result<std::map<std::int64_t, voxel::LabelBox>> boxes = voxel::label_boxes(view, task);
   if (!boxes) return fail(boxes.error());
   if (boxes->empty()) return fail(ErrorCode::empty, "has no label but 0");
   for (const auto& [label, box] : *boxes) {
     if (task.cancelled()) return cancelled_error("contouring");
-    ScalarVolume<std::uint8_t> mask = mask_of(view, box, label);
+    ScalarVolume<std::uint8_t> mask = voxel::label_mask(view, box, label);
     Result<Mesh> mesh = contour(volume.header, mask.view(), {127.5}, task);
     if (options.smooth > 0) {
       const Vec3d sigma = blur_of(options, mask.grid);
@@ -258,7 +160,7 @@ Result<double> choose_iso(const VolumeSurfaceOptions& options, const VolumeValue
     return fail(ErrorCode::empty, fmt::format("all values are {}: there is no surface", range.least));
   }
   if (!options.iso) {
-    const double iso = otsu_threshold(values, range.least, range.most);
+    const double iso = voxel::otsu_threshold(values, range.least, range.most);
     warnings.push_back(fmt::format("the surface is that at {} of {} to {} (Otsu's threshold); choose with --iso",
                                    short_number(iso), short_number(range.least), short_number(range.most)));
     return iso;
@@ -271,39 +173,6 @@ Result<double> choose_iso(const VolumeSurfaceOptions& options, const VolumeValue
 }
 
 }  // namespace
-
-double otsu_threshold(const VolumeValues& values, double least, double most) {
-  std::vector<std::uint64_t> bins(kBins, 0);
-  const double scale = kBins / (most - least);
-  std::visit(
-      [&](const auto& all) {
-        for (const auto v : all) {
-          const double at = (static_cast<double>(v) - least) * scale;
-          if (at >= 0) ++bins[std::min(static_cast<std::size_t>(at), kBins - 1)];  // not for NaN
-        }
-      },
-      values);
-  double count = 0, sum = 0;
-  for (std::size_t b = 0; b < kBins; ++b) {
-    count += static_cast<double>(bins[b]);
-    sum += static_cast<double>(bins[b]) * static_cast<double>(b);
-  }
-  double below = 0, below_sum = 0, best = -1;
-  std::size_t cut = kBins / 2;
-  for (std::size_t b = 0; b + 1 < kBins; ++b) {
-    below += static_cast<double>(bins[b]);
-    below_sum += static_cast<double>(bins[b]) * static_cast<double>(b);
-    const double above = count - below;
-    if (!(below > 0) || !(above > 0)) continue;
-    const double gap = below_sum / below - (sum - below_sum) / above;
-    const double between = below * above * gap * gap;
-    if (between > best) {
-      best = between;
-      cut = b;
-    }
-  }
-  return least + (static_cast<double>(cut) + 1) / scale;
-}
 
 Result<VolumeSurface> surface_of(const ScannedVolume& volume, const VolumeSurfaceOptions& options, Task task) {
   if (const Result<void> ok = validate(volume); !ok) return fail(ok.error());

@@ -31,8 +31,4 @@ struct VolumeSurface {
 /// validate()), bad_format (no value is a number), empty (nothing above), cancelled.
 Result<VolumeSurface> surface_of(const ScannedVolume& volume, const VolumeSurfaceOptions& options = {}, Task task = {});
 
-/// The value that best parts values in two: Otsu, A threshold selection method from gray-level histograms, IEEE
-/// Transactions on Systems, Man, and Cybernetics 9 (1979); 1024 bins between least and most. O(values).
-double otsu_threshold(const VolumeValues& values, double least, double most);
-
 }  // namespace lodestone::chain

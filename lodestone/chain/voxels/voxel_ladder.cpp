@@ -96,6 +96,30 @@ Result<LadderResult> collapse_levels(Model original, const LadderOptions& option
   return made;
 }
 
+// Each level a surface of its own.
+Result<LadderResult> separate_levels(Model original, const LadderOptions& options, VoxelLevels& levels,
+                                     const std::vector<VoxelTarget>& targets, std::uint32_t finest, const Task& task) {
+  LadderResult out;
+  out.warnings = levels.solid().warnings;
+  out.ladder.original = std::move(original);
+  const Stopwatch preparing;
+  const Result<Reference> reference = Reference::create(out.ladder.original, task.part(0.1));
+  if (!reference) return fail(reference.error());
+  out.measure_seconds = preparing.total();
+  out.ladder.levels.push_back(detail::original_level(out.ladder.original, reference->diagonal()));
+  const Result<void> added = add_levels(out, levels, targets, finest, *reference, options, task.part(0.9));
+  if (!added) return fail(added.error());
+  return out;
+}
+
+Result<void> add_attributes(Ladder& ladder, const AttributeSource& source, const Task& task) {
+  for (std::size_t level = 1; level < ladder.levels.size(); ++level) {
+    const Result<void> added = source.add_to(ladder.levels[level].model, level, task);
+    if (!added) return fail(added.error());
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<LadderResult> build_voxel_ladder(Model original, const LadderOptions& options, const VoxelLadderOptions& voxels,
@@ -105,30 +129,26 @@ Result<LadderResult> build_voxel_ladder(Model original, const LadderOptions& opt
     return fail(ErrorCode::bad_argument, "levels by voxels need an original of one mesh", {},
                 "flatten the scene first");
   }
+  const Result<AttributeSource> source = AttributeSource::create(original, voxels.attributes, task.part(0.1));
+  if (!source) return fail(source.error());
   const std::vector<VoxelTarget> targets = targets_of(options, drawn_triangles(original));
   VoxelTarget first = targets.front();
   first.then_collapse = voxels.then_collapse;
   first.resolution = voxels.resolution;
   const Result<std::uint32_t> finest = detail::finest_for(original, voxels.voxel, first, task.part(0.1));
   if (!finest) return fail(finest.error());
-  Result<VoxelLevels> levels = VoxelLevels::create(original, voxels.voxel, *finest, task.part(0.2));
+  Result<VoxelLevels> levels = VoxelLevels::create(original, voxels.voxel, *finest, task.part(0.1));
   if (!levels) return fail(levels.error());
-  if (voxels.then_collapse) {
-    return collapse_levels(std::move(original), options, *levels, first, *finest, task.part(0.7));
-  }
-  LadderResult out;
-  out.warnings = levels->solid().warnings;
-  out.ladder.original = std::move(original);
-  const Stopwatch preparing;
-  const Result<Reference> reference = Reference::create(out.ladder.original, task.part(0.1));
-  if (!reference) return fail(reference.error());
-  out.measure_seconds = preparing.total();
-  out.ladder.levels.push_back(detail::original_level(out.ladder.original, reference->diagonal()));
-  const Result<void> added =
-      add_levels(out, *levels, targets, *finest, *reference, options, task.part(options.image ? 0.4 : 0.6));
-  if (!added) return fail(added.error());
+  LadderOptions without_pictures = options;  // they are compared when the levels have their colours
+  without_pictures.image.reset();
+  const Task making = task.part(options.image ? 0.4 : 0.6);
+  Result<LadderResult> out =
+      voxels.then_collapse ? collapse_levels(std::move(original), without_pictures, *levels, first, *finest, making)
+                           : separate_levels(std::move(original), without_pictures, *levels, targets, *finest, making);
+  if (!out) return out;
+  if (const Result<void> added = add_attributes(out->ladder, *source, task); !added) return fail(added.error());
   if (options.image) {
-    const Result<void> compared = detail::compare_pictures(out, *options.image, task.part(0.2, "comparing pictures"));
+    const Result<void> compared = detail::compare_pictures(*out, *options.image, task.part(0.2, "comparing pictures"));
     if (!compared) return fail(compared.error());
   }
   return out;

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "lodestone/base/file.h"
-#include "lodestone/io/plain/flat_mesh_detail.h"
+#include "lodestone/core/flatten.h"
 #include "lodestone/io/write_detail.h"
 
 namespace lodestone::io {

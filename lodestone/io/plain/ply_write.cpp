@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "lodestone/base/file.h"
+#include "lodestone/core/flatten.h"
 #include "lodestone/io/images/file_detail.h"
-#include "lodestone/io/plain/flat_mesh_detail.h"
 #include "lodestone/io/read_detail.h"
 #include "lodestone/io/write_detail.h"
 

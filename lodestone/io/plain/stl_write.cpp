@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "lodestone/base/file.h"
-#include "lodestone/io/plain/flat_mesh_detail.h"
+#include "lodestone/core/flatten.h"
 #include "lodestone/io/write_detail.h"
 #include "lodestone/math/triangle.h"
 

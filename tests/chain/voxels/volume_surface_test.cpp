@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "lodestone/core/topology.h"
+#include "lodestone/voxel/otsu.h"
 
 namespace lodestone::chain {
 namespace {
@@ -100,7 +101,7 @@ TEST(VolumeSurface, refuses_what_has_no_surface) {
 TEST(VolumeSurface, takes_otsus_threshold) {
   std::vector<std::uint8_t> values;
   for (int i = 0; i < 1000; ++i) values.push_back(static_cast<std::uint8_t>(i % 2 == 0 ? 20 + i % 7 : 180 + i % 9));
-  const double iso = otsu_threshold(std::span<const std::uint8_t>(values), 20, 188);
+  const double iso = voxel::otsu_threshold(std::span<const std::uint8_t>(values), 20, 188);
   EXPECT_GT(iso, 26);
   EXPECT_LT(iso, 180);
 }

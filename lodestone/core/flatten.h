@@ -1,4 +1,4 @@
-// One mesh in world space from a model, for formats without a scene.
+// Scenes as one mesh.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 #include "lodestone/core/model.h"
 
-namespace lodestone::io {
+namespace lodestone {
 
 /// All instances as one mesh: positions, normals and tangents transformed, mirrored ones turned so that faces stay
 /// outward, groups joined. Streams are matched by name, meaning and shape; one that a drawn mesh lacks is left out and
@@ -14,4 +14,8 @@ namespace lodestone::io {
 /// precision is kept.
 Mesh flatten_to_mesh(const Model& model, std::vector<std::string>& warnings);
 
-}  // namespace lodestone::io
+/// The model as one mesh placed once, in world space, without the document that it came from; as it is where it is
+/// that already. What is lost is told in `warnings`.
+Model flattened(Model model, std::vector<std::string>& warnings);
+
+}  // namespace lodestone

@@ -1,12 +1,11 @@
-#include "lodestone/io/plain/flat_mesh_detail.h"
-#include "lodestone/io/plain/flatten.h"
+#include "lodestone/core/flatten.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace lodestone::io {
+namespace lodestone {
 
 namespace {
 
@@ -129,4 +128,4 @@ Model flattened(Model model, std::vector<std::string>& warnings) {
   return out;
 }
 
-}  // namespace lodestone::io
+}  // namespace lodestone

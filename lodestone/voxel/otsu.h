@@ -1,0 +1,12 @@
+// Otsu's threshold: the value that separates two classes of values best.
+#pragma once
+
+#include "lodestone/core/scanned_volume.h"
+
+namespace lodestone::voxel {
+
+/// The value that best parts values in two: Otsu, A threshold selection method from gray-level histograms, IEEE
+/// Transactions on Systems, Man, and Cybernetics 9 (1979); 1024 bins between least and most. O(values).
+double otsu_threshold(const VolumeValues& values, double least, double most);
+
+}  // namespace lodestone::voxel
