@@ -37,7 +37,7 @@ Result<Model> read_input(const fs::path& path, const Console& console, Task task
   Result<Model> model = read();
   if (!model && !volume.read.raw) return fail(io::told_by_content(model.error(), path));
   if (!model) return model;
-  if (const Result<void> upright = apply_up(*model, volume.up, path); !upright) return fail(upright.error());
+  LODESTONE_TRY(apply_up(*model, volume.up, path));
   for (const std::string& warning : model->warnings) console.note(fmt::format("{}: {}", path.string(), warning));
   return model;
 }
@@ -93,7 +93,7 @@ Result<void> check_output(const fs::path& output, const std::vector<fs::path>& i
                                   : fmt::format("'{}' is no format that we write", extension),
                 output.string(), "end it in .glb, .gltf, .ply, .obj, .stl or .off");
   }
-  if (const Result<void> name = io::check_model_name(output, compression); !name) return name;
+  LODESTONE_TRY(io::check_model_name(output, compression));
   if (kind == OutputKind::one_model && is_level_pattern(output)) {
     return fail(ErrorCode::bad_argument, "has {level} in its name, but one model is written", output.string(),
                 "'lod build' writes a file a level; or leave {level} out");
@@ -117,7 +117,7 @@ Result<void> check_place(const fs::path& output, const std::vector<fs::path>& in
     return fail(ErrorCode::cannot_write, "is a directory", output.string(), "name a file in it");
   }
   const Result<fs::path> place = output_place(output);
-  if (!place) return fail(place.error());
+  LODESTONE_TRY(place);
   for (const fs::path& written : {folder, place->has_parent_path() ? place->parent_path() : fs::path(".")}) {
     if (::access(written.c_str(), W_OK) == 0) continue;
     return fail(ErrorCode::cannot_write, std::generic_category().message(errno), written.string(),

@@ -21,7 +21,7 @@ constexpr const char* kConvertFirst = "convert it to glTF, OBJ or PLY with the p
 
 Result<Model> read_foreign(const fs::path& path, Task task) {
   const Result<InputFile> file = InputFile::open(path);
-  if (!file) return fail(file.error());
+  LODESTONE_TRY(file);
   const TemporaryFolder folder;
   if (folder.path().empty()) {
     return fail(ErrorCode::cannot_write, "no temporary folder could be made", path.string(), "set TMPDIR to one");
@@ -30,7 +30,7 @@ Result<Model> read_foreign(const fs::path& path, Task task) {
   const ChildLimits limits = limits_for(file->size());
   const Result<ChildOutcome> outcome =
       run_child("/proc/self/exe", {"lod", kForeignVerb, path.string(), glb.string()}, limits, task);
-  if (!outcome) return fail(outcome.error());
+  LODESTONE_TRY(outcome);
   if (outcome->end == ChildOutcome::End::cancelled) return cancelled_error("reading");
   const ChildReport& report = outcome->report;
   if (report.failed) return fail(report.error);

@@ -11,7 +11,7 @@ namespace {
 
 Result<void> read(const VolumeWords& words) {
   Result<OutputFile> file = OutputFile::create(words.values);
-  if (!file) return fail(file.error());
+  LODESTONE_TRY(file);
   io::VolumeSink sink;
   sink.begin = [](const VolumeHeader& header, io::VoxelType type) -> Result<void> {
     say_volume(header, type);

@@ -126,7 +126,7 @@ Result<Vec3d> triple(const Arguments& arguments, const char* option) {
 Result<io::RawLayout> raw_layout(const Arguments& arguments) {
   io::RawLayout raw;
   const Result<Vec3d> size = triple(arguments, "--raw");
-  if (!size) return fail(size.error());
+  LODESTONE_TRY(size);
   for (std::size_t k = 0; k < 3; ++k) {
     if (!((*size)[k] >= 1) || (*size)[k] > 65'535 || (*size)[k] != std::floor((*size)[k])) {
       return bad_value("--raw", arguments.text("--raw"), "use three counts of voxels, 1 to 65535 each");
@@ -134,7 +134,7 @@ Result<io::RawLayout> raw_layout(const Arguments& arguments) {
     raw.size[k] = static_cast<std::uint32_t>((*size)[k]);
   }
   const Result<Vec3d> spacing = triple(arguments, "--raw-spacing");
-  if (!spacing) return fail(spacing.error());
+  LODESTONE_TRY(spacing);
   if (!(spacing->x > 0 && spacing->y > 0 && spacing->z > 0)) {
     return bad_value("--raw-spacing", arguments.text("--raw-spacing"), "use sizes above 0");
   }
@@ -145,7 +145,7 @@ Result<io::RawLayout> raw_layout(const Arguments& arguments) {
     raw.big_endian = true;
   }
   const Result<std::uint64_t> skip = arguments.count("--raw-skip", 0, std::uint64_t{1} << 40);
-  if (!skip) return fail(skip.error());
+  LODESTONE_TRY(skip);
   raw.skip_bytes = *skip;
   return raw;
 }
@@ -211,7 +211,7 @@ Result<ScannedVolume> read_in_child(const fs::path& path, const VolumeRequest& r
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return fail(InputFile::open(path).error());
   const Result<fs::path> program = reader_program();
-  if (!program) return fail(program.error());
+  LODESTONE_TRY(program);
   const TemporaryFolder folder;
   if (folder.path().empty()) {
     return fail(ErrorCode::cannot_write, "no temporary folder could be made", path.string(), "set TMPDIR to one");
@@ -219,7 +219,7 @@ Result<ScannedVolume> read_in_child(const fs::path& path, const VolumeRequest& r
   const fs::path values = folder.path() / "values";
   const ChildLimits limits = limits_for(bytes_of(path));
   const Result<ChildOutcome> outcome = run_child(*program, volume_words(path, values, request.read), limits, task);
-  if (!outcome) return fail(outcome.error());
+  LODESTONE_TRY(outcome);
   if (outcome->end == ChildOutcome::End::cancelled) return cancelled_error("reading");
   if (outcome->report.failed) return fail(outcome->report.error);
   if (!outcome->report.done || outcome->status != 0) {
@@ -227,7 +227,7 @@ Result<ScannedVolume> read_in_child(const fs::path& path, const VolumeRequest& r
                 "convert it to NRRD or MetaImage with the program that made it");
   }
   const Result<MappedFile> mapped = map_file(values);
-  if (!mapped) return fail(mapped.error());
+  LODESTONE_TRY(mapped);
   SaidVolume said = volume_of(outcome->report);
   ScannedVolume volume;
   volume.header = std::move(said.header);
@@ -258,22 +258,22 @@ Result<VolumeRequest> volume_request(const Arguments& arguments) {
   }
   if (arguments.has("--raw")) {
     Result<io::RawLayout> raw = raw_layout(arguments);
-    if (!raw) return fail(raw.error());
+    LODESTONE_TRY(raw);
     request.read.raw = std::move(*raw);
   }
-  if (const Result<void> ok = read_smoothing(arguments, request.surface); !ok) return fail(ok.error());
+  LODESTONE_TRY(read_smoothing(arguments, request.surface));
   if (arguments.has("--scan-resolution")) {
     const Result<std::uint64_t> resolution = arguments.count("--scan-resolution", 8, 4096);
-    if (!resolution) return fail(resolution.error());
+    LODESTONE_TRY(resolution);
     request.scan.resolution = static_cast<std::uint32_t>(*resolution);
   }
   request.scan.splat = arguments.has("--splat");
   if (arguments.has("--close")) {
     const Result<LengthRules> lengths = length_rules(arguments);
-    if (!lengths) return fail(lengths.error());
+    LODESTONE_TRY(lengths);
     request.lengths = *lengths;
     Result<std::vector<LengthArgument>> close = length_list(arguments, "--close", *lengths);
-    if (!close) return fail(close.error());
+    LODESTONE_TRY(close);
     if (close->size() != 1) return bad_value("--close", arguments.text("--close"), "use one radius, such as 1%");
     request.close = std::move(*close);
   }
@@ -296,14 +296,14 @@ bool is_scan(const fs::path& path) {
 
 Result<Model> read_scan_model(const fs::path& path, const VolumeRequest& request, Task task) {
   Result<PointCloud> cloud = io::read_points(path, task.part(0.2, "reading"));
-  if (!cloud) return fail(cloud.error());
+  LODESTONE_TRY(cloud);
   chain::ScanSurfaceOptions options = request.scan;
   if (!request.close.empty()) {
     Model unit;
     unit.meters_per_unit = cloud->meters_per_unit;
     apply_unit(unit, request.lengths);
     const Result<std::vector<double>> radius = to_model_units(request.close, unit, bounds_of(*cloud).diagonal());
-    if (!radius) return fail(radius.error());
+    LODESTONE_TRY(radius);
     options.close_radius = radius->front();
   }
   Result<chain::ScanSurface> surface = chain::surface_of_scan(std::move(*cloud), options, task.part(0.8));
@@ -319,7 +319,7 @@ Result<Model> read_scan_model(const fs::path& path, const VolumeRequest& request
 
 Result<Model> read_volume_model(const fs::path& path, const VolumeRequest& request, Task task) {
   const Result<ScannedVolume> volume = read_in_child(path, request, task.part(0.5, "reading"));
-  if (!volume) return fail(volume.error());
+  LODESTONE_TRY(volume);
   Result<chain::VolumeSurface> surface = chain::surface_of(*volume, request.surface, task.part(0.5, "contouring"));
   if (!surface) {
     Error error = surface.error();

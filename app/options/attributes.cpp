@@ -76,7 +76,7 @@ Result<void> read_attribute_options(const Arguments& arguments, chain::SimplifyC
     }
   }
   const Result<std::uint64_t> influences = arguments.count("--influences");
-  if (!influences) return fail(influences.error());
+  LODESTONE_TRY(influences);
   constraints.max_skin_influences = *influences;
   for (const char* option : {"--influences", "--tangents"}) {
     if (!arguments.has(option) || !arguments.has("--only")) continue;

@@ -82,8 +82,7 @@ Result<void> check_inputs(const VerbSpec& verb, const std::vector<std::string>& 
   }
   for (const std::string& input : inputs) {
     if (input.empty()) return fail(usage_error(verb, "an input is the empty word"));
-    const Result<void> checked = check_choice(verb, verb.inputs.usage, input, verb.inputs.choices);
-    if (!checked) return fail(checked.error());
+    LODESTONE_TRY(check_choice(verb, verb.inputs.usage, input, verb.inputs.choices));
   }
   return {};
 }
@@ -139,7 +138,7 @@ Result<std::vector<std::size_t>> Arguments::count_list(std::string_view option) 
   }
   for (const std::string& word : split_commas(text(option))) {
     const Result<std::uint64_t> value = parse_count(option, word, 1);
-    if (!value) return fail(value.error());
+    LODESTONE_TRY(value);
     values.push_back(*value);
   }
   return values;
@@ -157,7 +156,7 @@ Result<Arguments> parse_arguments(const VerbSpec& verb, const std::vector<std::s
 
   Arguments out;
   out.verb = &verb;
-  if (const Result<void> checked = check_switches(verb, words); !checked) return fail(checked.error());
+  LODESTONE_TRY(check_switches(verb, words));
   // CLI11 parses from the back of its vector. Inputs are what it leaves over: a verb's inputs may stand anywhere.
   std::vector<std::string> reversed(words.rbegin(), words.rend());
   try {
@@ -170,9 +169,7 @@ Result<Arguments> parse_arguments(const VerbSpec& verb, const std::vector<std::s
     if (slot.option->count() > 1 && !slot.spec->is_switch()) {
       return fail(usage_error(verb, fmt::format("{} is given {} times", slot.spec->name, slot.option->count())));
     }
-    if (const Result<void> checked = check_choice(verb, slot.spec->name, slot.text, slot.spec->choices); !checked) {
-      return fail(checked.error());
-    }
+    LODESTONE_TRY(check_choice(verb, slot.spec->name, slot.text, slot.spec->choices));
     out.given.emplace(slot.spec->name, std::move(slot.text));
   }
   bool only_inputs = false;  // after "--" even words with a dash are inputs
@@ -189,7 +186,7 @@ Result<Arguments> parse_arguments(const VerbSpec& verb, const std::vector<std::s
     out.inputs.push_back(word);
   }
   if (out.has("--help")) return out;
-  if (const Result<void> checked = check_inputs(verb, out.inputs); !checked) return fail(checked.error());
+  LODESTONE_TRY(check_inputs(verb, out.inputs));
   return out;
 }
 

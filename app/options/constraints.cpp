@@ -44,7 +44,7 @@ bool read_sphere(const std::vector<std::string_view>& words, chain::ConstraintSp
 template <class Read>
 Result<void> read_lines(const std::filesystem::path& path, const char* wrong, const char* remedy, const Read& read) {
   const Result<std::string> text = read_file(path);
-  if (!text) return fail(text.error());
+  LODESTONE_TRY(text);
   std::size_t number = 0;
   for (std::size_t at = 0; at < text->size();) {
     const std::size_t end = std::min(text->find('\n', at), text->size());
@@ -117,7 +117,7 @@ Result<std::optional<LengthArgument>> one_length(const Arguments& arguments, con
                                                  const LengthRules& lengths) {
   if (!arguments.has(option)) return std::nullopt;
   const Result<std::vector<LengthArgument>> list = length_list(arguments, option, lengths, BareLength::model_units);
-  if (!list) return fail(list.error());
+  LODESTONE_TRY(list);
   if (list->size() == 1) return list->front();
   return fail(ErrorCode::bad_argument, fmt::format("{} takes one length", option), {},
               fmt::format("such as {} 1mm", option));
@@ -224,20 +224,20 @@ Result<ConstraintPlan> constraints_of(const Arguments& arguments, const LengthRu
                 "choose one");
   }
   if (arguments.has("--lock")) {
-    if (const Result<void> ok = read_lock(arguments.text("--lock"), plan); !ok) return fail(ok.error());
+    LODESTONE_TRY(read_lock(arguments.text("--lock"), plan));
   }
   if (arguments.has("--weights")) {
-    if (const Result<void> ok = read_weights(arguments.text("--weights"), plan); !ok) return fail(ok.error());
+    LODESTONE_TRY(read_weights(arguments.text("--weights"), plan));
   }
   if (arguments.has("--only")) {
-    if (const Result<void> ok = read_only(arguments.text("--only"), plan); !ok) return fail(ok.error());
+    LODESTONE_TRY(read_only(arguments.text("--only"), plan));
   }
-  if (const Result<void> ok = read_attribute_options(arguments, plan.constraints); !ok) return fail(ok.error());
+  LODESTONE_TRY(read_attribute_options(arguments, plan.constraints));
   Result<std::optional<LengthArgument>> weld = one_length(arguments, "--weld", lengths);
-  if (!weld) return fail(weld.error());
+  LODESTONE_TRY(weld);
   plan.weld = std::move(*weld);
   Result<std::optional<LengthArgument>> join = one_length(arguments, "--join", lengths);
-  if (!join) return fail(join.error());
+  LODESTONE_TRY(join);
   plan.join = std::move(*join);
   return plan;
 }
@@ -280,12 +280,12 @@ Result<chain::SimplifyConstraints> ConstraintPlan::for_model(const Model& model,
   const auto in_model = [&](const std::optional<LengthArgument>& length, double& into) -> Result<void> {
     if (!length) return {};
     const Result<std::vector<double>> value = to_model_units({*length}, model, bounds_of(model).diagonal());
-    if (!value) return fail(value.error());
+    LODESTONE_TRY(value);
     into = value->front();
     return {};
   };
-  if (const Result<void> ok = in_model(weld, out.weld_tolerance); !ok) return fail(ok.error());
-  if (const Result<void> ok = in_model(join, out.join_length); !ok) return fail(ok.error());
+  LODESTONE_TRY(in_model(weld, out.weld_tolerance));
+  LODESTONE_TRY(in_model(join, out.join_length));
   return out;
 }
 

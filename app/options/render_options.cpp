@@ -41,7 +41,7 @@ Result<std::vector<double>> numbers(const Arguments& arguments, const char* opti
 
 Result<Vec3d> vector(const Arguments& arguments, const char* option) {
   const Result<std::vector<double>> v = numbers(arguments, option, 3, fmt::format("{}=0,1.5,4", option).c_str());
-  if (!v) return fail(v.error());
+  LODESTONE_TRY(v);
   return Vec3d{(*v)[0], (*v)[1], (*v)[2]};
 }
 
@@ -49,7 +49,7 @@ Result<void> read_look_at(const Arguments& arguments, CameraChoice& choice) {
   for (const auto& [option, into] : {std::pair{"--eye", &choice.eye}, std::pair{"--target", &choice.target}}) {
     if (!arguments.has(option)) continue;
     const Result<Vec3d> point = vector(arguments, option);
-    if (!point) return fail(point.error());
+    LODESTONE_TRY(point);
     *into = *point;
   }
   if (choice.target && !choice.eye) {
@@ -62,7 +62,7 @@ Result<void> read_look_at(const Arguments& arguments, CameraChoice& choice) {
   const Result<Vec3d> up = axis == "y"   ? Result<Vec3d>(Vec3d{0, 1, 0})
                            : axis == "z" ? Result<Vec3d>(Vec3d{0, 0, 1})
                                          : vector(arguments, "--up");
-  if (!up) return fail(up.error());
+  LODESTONE_TRY(up);
   if (*up == Vec3d{}) {
     return fail(ErrorCode::bad_argument, "--up is no direction", {}, "use --up y or --up z");
   }
@@ -187,7 +187,7 @@ Result<CameraChoice> camera_choice(const Arguments& arguments) {
   if (arguments.has("--view")) choice.angles = named_view(arguments.text("--view")).value_or(choice.angles);
   if (arguments.has("--angles")) {
     const Result<std::vector<double>> angles = numbers(arguments, "--angles", 2, "--angles=30,20");
-    if (!angles) return fail(angles.error());
+    LODESTONE_TRY(angles);
     choice.angles = {(*angles)[0], (*angles)[1]};
     if (std::abs(choice.angles.elevation_degrees) > 90) {
       return fail(ErrorCode::bad_argument,
@@ -195,9 +195,9 @@ Result<CameraChoice> camera_choice(const Arguments& arguments) {
                   "90 looks from straight above");
     }
   }
-  if (const Result<void> read = read_look_at(arguments, choice); !read) return fail(read.error());
+  LODESTONE_TRY(read_look_at(arguments, choice));
   const Result<double> fov = arguments.positive("--fov");
-  if (!fov) return fail(fov.error());
+  LODESTONE_TRY(fov);
   if (*fov >= 180) return fail(ErrorCode::bad_argument, fmt::format("--fov is {}, but it must be below 180", *fov));
   choice.lens = {arguments.has("--ortho"), *fov};
   return choice;
@@ -206,17 +206,17 @@ Result<CameraChoice> camera_choice(const Arguments& arguments) {
 Result<render::RenderOptions> render_options(const Arguments& arguments) {
   render::RenderOptions options;
   const auto size = size_of_picture(arguments);
-  if (!size) return fail(size.error());
+  LODESTONE_TRY(size);
   options.width = (*size)[0];
   options.height = (*size)[1];
   options.samples = arguments.text("--samples") == "1" ? 1 : 4;
   options.wireframe = arguments.has("--wireframe");
   const auto color = background(arguments);
-  if (!color) return fail(color.error());
+  LODESTONE_TRY(color);
   options.background = *color;
   if (arguments.has("--range")) {
     const Result<std::vector<double>> range = numbers(arguments, "--range", 2, "--range 0,0.5");
-    if (!range) return fail(range.error());
+    LODESTONE_TRY(range);
     options.heat_range = render::HeatRange{(*range)[0], (*range)[1]};
     if (!((*range)[0] < (*range)[1])) {
       return fail(ErrorCode::bad_argument, "--range must rise", {}, "as in --range 0,0.5");

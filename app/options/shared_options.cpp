@@ -393,9 +393,9 @@ Result<std::vector<double>> ratio_list(const Arguments& arguments, std::string_v
 Result<measure::DistanceOptions> distance_options(const Arguments& arguments) {
   measure::DistanceOptions options;
   const Result<std::uint64_t> samples = arguments.count("--samples", 1);
-  if (!samples) return fail(samples.error());
+  LODESTONE_TRY(samples);
   const Result<std::uint64_t> seed = arguments.count("--seed");
-  if (!seed) return fail(seed.error());
+  LODESTONE_TRY(seed);
   options.samples = *samples;
   options.seed = *seed;
   return options;
@@ -404,9 +404,9 @@ Result<measure::DistanceOptions> distance_options(const Arguments& arguments) {
 Result<measure::View> view_of(const Arguments& arguments) {
   measure::View view;
   const Result<double> height = arguments.positive("--height");
-  if (!height) return fail(height.error());
+  LODESTONE_TRY(height);
   const Result<double> fov = arguments.positive("--fov");
-  if (!fov) return fail(fov.error());
+  LODESTONE_TRY(fov);
   if (*fov >= 180) return fail(ErrorCode::bad_argument, fmt::format("--fov is {}, but it must be below 180", *fov));
   view.height_px = *height;
   view.fov_degrees = *fov;

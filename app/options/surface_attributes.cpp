@@ -29,7 +29,7 @@ Result<chain::SurfaceAttributeOptions> surface_attributes(const Arguments& argum
                 "choose one");
   }
   const Result<std::uint64_t> size = arguments.count("--texture-size", 16, 16'384);
-  if (!size) return fail(size.error());
+  LODESTONE_TRY(size);
   options.texture_size = static_cast<std::uint32_t>(*size);
   return options;
 }

@@ -50,14 +50,14 @@ Result<std::optional<chain::VoxelLadderOptions>> voxel_method(const Arguments& a
       return fail(ErrorCode::bad_argument, "--resolution is for --then-collapse: levels take theirs from the targets");
     }
     const Result<std::uint32_t> resolution = resolution_of(arguments);
-    if (!resolution) return fail(resolution.error());
+    LODESTONE_TRY(resolution);
     method.resolution = *resolution;
   }
   const Result<chain::VoxelOptions> options = voxel_options(arguments, {}, {});
-  if (!options) return fail(options.error());
+  LODESTONE_TRY(options);
   method.voxel = *options;
   Result<chain::SurfaceAttributeOptions> attributes = surface_attributes(arguments);
-  if (!attributes) return fail(attributes.error());
+  LODESTONE_TRY(attributes);
   method.attributes = std::move(*attributes);
   return std::optional<chain::VoxelLadderOptions>(method);
 }

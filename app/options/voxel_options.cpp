@@ -104,7 +104,7 @@ OptionGroup remesh_target_group() {
 
 Result<std::uint32_t> resolution_of(const Arguments& arguments) {
   const Result<std::uint64_t> resolution = arguments.count("--resolution", 4, 16'384);
-  if (!resolution) return fail(resolution.error());
+  LODESTONE_TRY(resolution);
   return static_cast<std::uint32_t>(*resolution);
 }
 
@@ -137,12 +137,12 @@ std::string name_of(voxel::FillRule fill) {
 Result<double> close_of(const Arguments& arguments, const LengthRules& lengths, const Model& model, double diagonal) {
   if (!arguments.has("--close")) return 0.0;
   const Result<std::vector<LengthArgument>> radius = length_list(arguments, "--close", lengths);
-  if (!radius) return fail(radius.error());
+  LODESTONE_TRY(radius);
   if (radius->size() != 1) {
     return fail(ErrorCode::bad_argument, "--close takes one radius", {}, "such as --close 1%");
   }
   const Result<std::vector<double>> units = to_model_units(*radius, model, diagonal);
-  if (!units) return fail(units.error());
+  LODESTONE_TRY(units);
   return units->front();
 }
 
@@ -150,7 +150,7 @@ Result<chain::VoxelOptions> voxel_options(const Arguments& arguments, const Leng
   chain::VoxelOptions options;
   options.fill = fill_of(arguments);
   const Result<double> close = close_of(arguments, lengths, model, bounds_of(model).diagonal());
-  if (!close) return fail(close.error());
+  LODESTONE_TRY(close);
   options.close = *close;
   if (options.close > 0 && !options.fill) options.fill = voxel::FillRule::shrinkwrap;
   if (options.close > 0 && options.fill != voxel::FillRule::shrinkwrap) {
@@ -158,7 +158,7 @@ Result<chain::VoxelOptions> voxel_options(const Arguments& arguments, const Leng
   }
   if (arguments.has("--supersample")) {
     const Result<std::uint64_t> supersample = arguments.count("--supersample", 1, 64);
-    if (!supersample) return fail(supersample.error());
+    LODESTONE_TRY(supersample);
     options.supersample = static_cast<std::uint32_t>(*supersample);
   }
   for (const auto& [name, placement] : kPlacements) {
@@ -166,7 +166,7 @@ Result<chain::VoxelOptions> voxel_options(const Arguments& arguments, const Leng
   }
   if (arguments.has("--adaptive")) {
     const Result<double> adaptive = arguments.positive("--adaptive");
-    if (!adaptive) return fail(adaptive.error());
+    LODESTONE_TRY(adaptive);
     options.adaptive = *adaptive;
   }
   options.keep_thin = arguments.has("--keep-thin");

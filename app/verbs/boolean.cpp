@@ -55,19 +55,19 @@ Result<BooleanRequest> boolean_request(const Arguments& arguments) {
 
 Result<ExitCode> run_boolean(const Arguments& arguments, Console& console) {
   const Result<BooleanRequest> asked = boolean_request(arguments);
-  if (!asked) return fail(asked.error());
+  LODESTONE_TRY(asked);
   VoxelRequest request;
   request.output = asked->output;
   request.compression = compression_of(arguments);
   request.json = arguments.has("--json");
   const std::vector<std::filesystem::path> paths(asked->inputs.begin(), asked->inputs.end());
-  if (const Result<void> ok = check_output(request.output, paths, request.compression); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_output(request.output, paths, request.compression));
   const Result<std::uint32_t> resolution = resolution_of(arguments);
-  if (!resolution) return fail(resolution.error());
+  LODESTONE_TRY(resolution);
   const Result<LengthRules> lengths = length_rules(arguments);
-  if (!lengths) return fail(lengths.error());
+  LODESTONE_TRY(lengths);
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
-  if (!distance) return fail(distance.error());
+  LODESTONE_TRY(distance);
 
   Stopwatch watch;
   VoxelReport report;
@@ -76,8 +76,8 @@ Result<ExitCode> run_boolean(const Arguments& arguments, Console& console) {
   reading.up = up_axis(arguments);
   for (const std::string& input : asked->inputs) {
     Result<Model> model = read_input(input, console, console.task().part(0.2, "reading"), {}, reading);
-    if (!model) return fail(model.error());
-    if (const Result<void> kept = io::check_replaced(*model, request.output); !kept) return fail(kept.error());
+    LODESTONE_TRY(model);
+    LODESTONE_TRY(io::check_replaced(*model, request.output));
     apply_unit(*model, *lengths);
     report.input += (report.input.empty() ? "" : ", ") + input;
     report.triangles_in += drawn_triangles(*model);
@@ -90,18 +90,16 @@ Result<ExitCode> run_boolean(const Arguments& arguments, Console& console) {
   options.resolution = *resolution;
   options.operations = asked->operations;
   const Result<chain::VoxelOptions> voxel = voxel_options(arguments, *lengths, models.front());
-  if (!voxel) return fail(voxel.error());
+  LODESTONE_TRY(voxel);
   options.voxel = *voxel;
   const Result<chain::BooleanResult> result = chain::boolean(models, options, console.task().part(0.7, "combining"));
-  if (!result) return fail(result.error());
+  LODESTONE_TRY(result);
   add_solid(report, result->fill, result->resolution, result->voxels_inside);
   add_seconds(report, result->seconds);
   report.level_resolution = *resolution;
   report.method = "voxels";
   tell(report, result->warnings, console);
-  if (const Result<void> done = finish(result->model, request, watch, report, console); !done) {
-    return fail(done.error());
-  }
+  LODESTONE_TRY(finish(result->model, request, watch, report, console));
   return ExitCode::done;
 }
 

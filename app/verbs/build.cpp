@@ -53,7 +53,7 @@ Result<Model> read_job(const BuildJob& job, const BuildPlan& plan, BuildReport& 
   if (!model) return model;
   Result<void> kept = io::check_replaced(*model, job.output, planned_levels(plan));
   if (kept && !job.report.empty()) kept = io::check_replaced(*model, job.report);
-  if (!kept) return fail(kept.error());
+  LODESTONE_TRY(kept);
   apply_unit(*model, plan.lengths);
   report.triangles = drawn_triangles(*model);
   report.diagonal = bounds_of(*model).diagonal();
@@ -69,8 +69,7 @@ Result<chain::LadderOptions> prepare_job(const BuildPlan& plan, Model& model, Bu
   Result<chain::LadderOptions> options = ladder_options(plan, model, notes, warnings, task);
   if (!options) return options;
   if (plan.image_error || plan.report) {
-    const Result<void> decoded = io::decode_base_colors(model, warnings, task);
-    if (!decoded) return fail(decoded.error());
+    LODESTONE_TRY(io::decode_base_colors(model, warnings, task));
   }
   report.prunes = options->constraints.vanishes();
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
@@ -85,8 +84,7 @@ Result<chain::LadderResult> make_levels(Model model, const BuildPlan& plan, cons
   if (!plan.voxel) return chain::build_ladder(std::move(model), options, task);
   std::vector<std::string> warnings;
   Model one = flattened(std::move(model), warnings);
-  const Result<void> decoded = decode_for(plan.voxel->attributes, one, warnings, task.part(0.1));
-  if (!decoded) return fail(decoded.error());
+  LODESTONE_TRY(decode_for(plan.voxel->attributes, one, warnings, task.part(0.1)));
   Result<chain::LadderResult> result = chain::build_voxel_ladder(std::move(one), options, *plan.voxel, task.part(0.9));
   if (!result) return result;
   warnings.insert(warnings.end(), result->warnings.begin(), result->warnings.end());
@@ -101,7 +99,7 @@ Result<void> write_job(const BuildJob& job, const BuildPlan& plan, const chain::
                        std::optional<ReportPage>& page, BuildReport& report, Console& console, const Task& task) {
   const io::WriteOptions write{plan.compression, chain::screen_coverages(result.ladder, plan.view)};
   const Result<io::WriteReport> written = io::write_ladder(result.ladder, job.output, write, task);
-  if (!written) return fail(written.error());
+  LODESTONE_TRY(written);
   for (const fs::path& file : written->files) console.wrote(file.string());
   add_levels(report, result, *written, plan.view);
   for (const std::string& warning : written->warnings) {
@@ -124,14 +122,14 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   BuildReport report;
   std::vector<std::string> warnings;  // on top of the model's own
   Result<Model> model = read_job(job, plan, report, console, task.part(0.05, "reading"));
-  if (!model) return fail(model.error());
+  LODESTONE_TRY(model);
   report.read_seconds = watch.lap();
   const Result<chain::LadderOptions> options = prepare_job(plan, *model, report, warnings, console, task);
-  if (!options) return fail(options.error());
+  LODESTONE_TRY(options);
   const bool one_file = job.output.filename().string().find("{level}") == std::string::npos;
   const Result<chain::LadderResult> result = make_levels(std::move(*model), plan, *options, one_file, report, console,
                                                          task.part(plan.report ? 0.7 : 0.9, "making levels"));
-  if (!result) return fail(result.error());
+  LODESTONE_TRY(result);
   report.levels_seconds = result->simplify_seconds;
   report.measure_seconds = result->measure_seconds;
   report.shortfalls = result->shortfalls;
@@ -139,17 +137,17 @@ Result<BuildReport> build_one(const BuildJob& job, const BuildPlan& plan, Consol
   std::optional<ReportPage> page;  // drawn before anything is written, so that an interrupted run leaves nothing
   if (plan.report) {
     Result<ReportPage> drawn = ReportPage::draw(job, plan, *result, warnings, task.part(0.2, "drawing"));
-    if (!drawn) return fail(drawn.error());
+    LODESTONE_TRY(drawn);
     page.emplace(std::move(*drawn));
   }
   watch.lap();
   const Result<void> written = write_job(job, plan, *result, page, report, console, task.part(0.05, "writing"));
-  if (!written) return fail(written.error());
+  LODESTONE_TRY(written);
   report.write_seconds = watch.lap();
   if (plan.verify) {
     const Result<VerifyReport> verified =
         verify_levels(report, plan.distance, task.part(0.3, "reading back what was written"));
-    if (!verified) return fail(verified.error());
+    LODESTONE_TRY(verified);
     report.verified = *verified;
   }
   report.total_seconds = watch.total();
@@ -263,7 +261,7 @@ class ResultFolder {
 
 Result<ExitCode> run_single(const BuildJob& job, const BuildPlan& plan, bool json, Console& console) {
   const Result<BuildReport> report = build_one(job, plan, console, console.task().part(1.0));
-  if (!report) return fail(report.error());
+  LODESTONE_TRY(report);
   json ? console.result(to_json(*report)) : console.table(table_of(*report, plan));
   tell_shortfalls(*report, console);
   return report->shortfalls.empty() ? ExitCode::done : ExitCode::fell_short;
@@ -307,11 +305,11 @@ Result<ExitCode> run_batch(const std::vector<BuildJob>& jobs, const BuildPlan& p
 
 Result<ExitCode> run_build(const Arguments& arguments, Console& console) {
   const Result<BuildPlan> plan = build_plan(arguments);
-  if (!plan) return fail(plan.error());
+  LODESTONE_TRY(plan);
   const Result<BuildJobs> all = build_jobs(arguments, plan->volume);
-  if (!all) return fail(all.error());
+  LODESTONE_TRY(all);
   ResultFolder folder;
-  if (const Result<void> made = folder.make(all->folder); !made) return fail(made.error());
+  LODESTONE_TRY(folder.make(all->folder));
   const bool json = arguments.has("--json");
   return all->batch ? run_batch(all->jobs, *plan, json, console) : run_single(all->jobs.front(), *plan, json, console);
 }

@@ -22,13 +22,13 @@ Result<void> read_target(const Arguments& arguments, BuildPlan& plan) {
   const Result<std::string> target =
       given_target(arguments, {"--levels", "--ratio", "--triangles", "--error", "--distances"},
                    "choose one; --ratio, --triangles, --error and --distances take a list, one level for each value");
-  if (!target) return fail(target.error());
+  LODESTONE_TRY(target);
   if (arguments.has("--pixels") && *target != "--distances") {
     return fail(ErrorCode::bad_argument, "--pixels needs --distances", {}, "such as --pixels 1 --distances 5,10,20");
   }
   // Takes a parsed value over, or hands its error on.
   const auto take = [](auto parsed, auto& into) -> Result<void> {
-    if (!parsed) return fail(parsed.error());
+    LODESTONE_TRY(parsed);
     into = std::move(*parsed);
     return {};
   };
@@ -36,7 +36,7 @@ Result<void> read_target(const Arguments& arguments, BuildPlan& plan) {
   if (*target == "--triangles") return take(arguments.count_list("--triangles"), plan.triangles);
   if (*target == "--error") return take(length_list(arguments, "--error", plan.lengths), plan.errors);
   if (*target == "--distances") {
-    if (const Result<void> pixels = take(arguments.positive("--pixels"), plan.pixels); !pixels) return pixels;
+    LODESTONE_TRY(take(arguments.positive("--pixels"), plan.pixels));
     return take(length_list(arguments, "--distances", plan.lengths, BareLength::model_units), plan.distances);
   }
   return take(arguments.count("--levels", 2, kMostLevels), plan.levels);
@@ -47,23 +47,23 @@ Result<void> read_target(const Arguments& arguments, BuildPlan& plan) {
 Result<BuildPlan> build_plan(const Arguments& arguments) {
   BuildPlan plan;
   const Result<LengthRules> lengths = length_rules(arguments);
-  if (!lengths) return fail(lengths.error());
+  LODESTONE_TRY(lengths);
   plan.lengths = *lengths;
-  if (const Result<void> target = read_target(arguments, plan); !target) return fail(target.error());
+  LODESTONE_TRY(read_target(arguments, plan));
   const Result<measure::View> view = view_of(arguments);
-  if (!view) return fail(view.error());
+  LODESTONE_TRY(view);
   plan.view = *view;
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
-  if (!distance) return fail(distance.error());
+  LODESTONE_TRY(distance);
   plan.distance = *distance;
   Result<ConstraintPlan> constraints = constraints_of(arguments, plan.lengths);
-  if (!constraints) return fail(constraints.error());
+  LODESTONE_TRY(constraints);
   plan.constraints = std::move(*constraints);
   Result<VolumeRequest> volume = volume_request(arguments);
-  if (!volume) return fail(volume.error());
+  LODESTONE_TRY(volume);
   plan.volume = std::move(*volume);
   const Result<std::optional<chain::VoxelLadderOptions>> voxel = voxel_method(arguments);
-  if (!voxel) return fail(voxel.error());
+  LODESTONE_TRY(voxel);
   plan.voxel = *voxel;
   plan.effort = effort_of(arguments, chain::Effort::normal);
   if (plan.voxel && arguments.has("--effort")) {
@@ -107,7 +107,7 @@ Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& 
   options.triangles = plan.triangles;
   Result<chain::SimplifyConstraints> constraints =
       plan.constraints.for_model(model, smallest_level(plan, model), warnings, task);
-  if (!constraints) return fail(constraints.error());
+  LODESTONE_TRY(constraints);
   options.constraints = std::move(*constraints);
   options.effort = plan.voxel ? chain::Effort::fast : plan.effort;
   options.force = plan.force;
@@ -121,11 +121,11 @@ Result<chain::LadderOptions> ladder_options(const BuildPlan& plan, const Model& 
   }
   const double diagonal = bounds_of(model).diagonal();
   const Result<std::vector<double>> errors = to_model_units(plan.errors, model, diagonal);
-  if (!errors) return fail(errors.error());
+  LODESTONE_TRY(errors);
   options.errors = *errors;
   doubt_lengths("--error", plan.errors, model, warnings);
   const Result<std::vector<double>> distances = to_model_units(plan.distances, model, diagonal);
-  if (!distances) return fail(distances.error());
+  LODESTONE_TRY(distances);
   for (const double distance : *distances) {
     options.errors.push_back(measure::pixels_to_error(plan.pixels, distance, plan.view));
     notes.push_back(fmt::format("{} pixels at {} allow an error of {} ({} of the diagonal)", plan.pixels,
@@ -161,7 +161,7 @@ Result<std::vector<fs::path>> list_inputs(const Arguments& arguments, const Volu
       continue;
     }
     Result<std::vector<fs::path>> files = models_in(word);
-    if (!files) return fail(files.error());
+    LODESTONE_TRY(files);
     inputs.insert(inputs.end(), files->begin(), files->end());
   }
   return inputs;
@@ -203,7 +203,7 @@ Result<void> check_distinct(const std::vector<BuildJob>& jobs, fs::path BuildJob
 // Before a folder exists only the names can be checked.
 Result<void> check_outputs(const BuildJobs& all, const std::vector<fs::path>& inputs, io::Compression compression) {
   for (const auto place : {&BuildJob::output, &BuildJob::report}) {
-    if (const Result<void> distinct = check_distinct(all.jobs, place); !distinct) return distinct;
+    LODESTONE_TRY(check_distinct(all.jobs, place));
   }
   const bool folder_exists = all.folder.empty() || is_folder(all.folder);
   for (const BuildJob& job : all.jobs) {
@@ -249,7 +249,7 @@ Result<BuildJobs> build_jobs(const Arguments& arguments, const VolumeRequest& vo
                 "name a folder with a slash at its end, such as -o lods/");
   }
   Result<std::vector<fs::path>> inputs = list_inputs(arguments, volume);
-  if (!inputs) return fail(inputs.error());
+  LODESTONE_TRY(inputs);
   if (into_folder) all.folder = output;
   for (const std::string& word : arguments.inputs) {
     std::error_code ignored;
@@ -259,15 +259,14 @@ Result<BuildJobs> build_jobs(const Arguments& arguments, const VolumeRequest& vo
     }
   }
   const Result<std::string> report = report_pattern(arguments, all.batch);
-  if (!report) return fail(report.error());
+  LODESTONE_TRY(report);
   const std::string pattern = into_folder ? (fs::path(output) / "{name}.glb").string() : output;
   const std::vector<std::string> names = output_names(*inputs);
   for (std::size_t i = 0; i < inputs->size(); ++i) {
     all.jobs.push_back(
         BuildJob{(*inputs)[i], replaced(pattern, "{name}", names[i]), replaced(*report, "{name}", names[i])});
   }
-  const Result<void> checked = check_outputs(all, *inputs, compression_of(arguments));
-  if (!checked) return fail(checked.error());
+  LODESTONE_TRY(check_outputs(all, *inputs, compression_of(arguments)));
   return all;
 }
 

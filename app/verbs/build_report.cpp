@@ -44,9 +44,9 @@ std::vector<report::ReportOption> report_options(const Arguments& arguments) {
 Result<ReportPage> ReportPage::draw(const BuildJob& job, const BuildPlan& plan, const chain::LadderResult& result,
                                     const std::vector<std::string>& warnings, const Task& task) {
   Result<OutputFile> file = OutputFile::create(job.report);
-  if (!file) return fail(file.error());
+  LODESTONE_TRY(file);
   Result<report::ReportData> data = report::ladder_report(result, {}, task);
-  if (!data) return fail(data.error());
+  LODESTONE_TRY(data);
   data->name = job.input.filename().string();
   data->unit = unit_name(result.ladder.original.meters_per_unit);
   data->view = plan.view;

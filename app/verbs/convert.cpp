@@ -35,7 +35,7 @@ struct Plan {
 // --level and {level}: which levels of the input are wanted.
 Result<void> plan_levels(const Arguments& arguments, Plan& plan) {
   const Result<std::uint64_t> level = arguments.count("--level", 0, 1024);
-  if (!level) return fail(level.error());
+  LODESTONE_TRY(level);
   if (is_level_pattern(plan.output)) {
     if (arguments.has("--level")) {
       return fail(ErrorCode::bad_argument, "--level takes one level, {level} in the output writes all", {},
@@ -57,17 +57,16 @@ Result<Plan> plan_of(const Arguments& arguments) {
   Plan plan;
   plan.input = arguments.inputs[0];
   const Result<std::string> output = output_of(arguments);
-  if (!output) return fail(output.error());
+  LODESTONE_TRY(output);
   plan.output = *output;
   plan.compression = compression_of(arguments);
-  const Result<void> checked = check_output(plan.output, {plan.input}, plan.compression, OutputKind::levels);
-  if (!checked) return fail(checked.error());
-  if (const Result<void> ok = plan_levels(arguments, plan); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_output(plan.output, {plan.input}, plan.compression, OutputKind::levels));
+  LODESTONE_TRY(plan_levels(arguments, plan));
   const Result<LengthRules> lengths = length_rules(arguments);
-  if (!lengths) return fail(lengths.error());
+  LODESTONE_TRY(lengths);
   plan.lengths = *lengths;
   Result<VolumeRequest> volume = volume_request(arguments);
-  if (!volume) return fail(volume.error());
+  LODESTONE_TRY(volume);
   plan.volume = std::move(*volume);
   return plan;
 }
@@ -87,7 +86,7 @@ Result<Ladder> read_levels(const Plan& plan, Model original, ConvertReport& repo
   for (std::size_t level = 1; level < plan.levels; ++level) {
     Result<Model> model =
         read(plan, {.levels = false, .draw_level = level}, console, task.part(1.0 / static_cast<double>(plan.levels)));
-    if (!model) return fail(model.error());
+    LODESTONE_TRY(model);
     ladder.levels.emplace_back();
     ladder.levels.back().model = std::move(*model);
   }
@@ -114,13 +113,13 @@ std::string lines_of(const ConvertReport& report, const std::vector<std::uint64_
 
 Result<ExitCode> run_convert(const Arguments& arguments, Console& console) {
   const Result<Plan> plan = plan_of(arguments);
-  if (!plan) return fail(plan.error());
+  LODESTONE_TRY(plan);
   ConvertReport report;
   report.input = plan->input;
   Stopwatch watch;
   const bool all = plan->levels > 0;
   Result<Model> model = read(*plan, plan->read, console, console.task().part(all ? 0.2 : 0.5, "reading"));
-  if (!model) return fail(model.error());
+  LODESTONE_TRY(model);
   report.triangles = drawn_triangles(*model);
   report.warnings = model->warnings;
   const io::WriteOptions options{plan->compression, {}};
@@ -128,14 +127,14 @@ Result<ExitCode> run_convert(const Arguments& arguments, Console& console) {
   if (all) {
     const Result<Ladder> ladder =
         read_levels(*plan, std::move(*model), report, console, console.task().part(0.3, "reading levels"));
-    if (!ladder) return fail(ladder.error());
+    LODESTONE_TRY(ladder);
     report.read_seconds = watch.lap();
     written = io::write_ladder(*ladder, plan->output, options, console.task().part(0.5, "writing"));
   } else {
     report.read_seconds = watch.lap();
     written = io::write_model(*model, plan->output, options, console.task().part(0.5, "writing"));
   }
-  if (!written) return fail(written.error());
+  LODESTONE_TRY(written);
   console.wrote(plan->output);
   report.write_seconds = watch.lap();
   report.bytes = written->total_bytes;

@@ -25,9 +25,9 @@ Result<HeatReport> write_heat(const Model& a, const Model& b, const std::string&
   measure::HeatOptions options;
   options.linear_colors = extension_of(output) != ".ply";
   const Result<measure::Heat> heat = measure::heat_map(a, b, options, task.part(0.8));
-  if (!heat) return fail(heat.error());
+  LODESTONE_TRY(heat);
   const Result<io::WriteReport> written = io::write_model(heat->model, output, {}, task.part(0.2, "writing"));
-  if (!written) return fail(written.error());
+  LODESTONE_TRY(written);
   console.wrote(output);
   for (const std::string& warning : written->warnings) console.note(fmt::format("{}: {}", output, warning));
   return HeatReport{output, heat->range, heat->largest, drawn_triangles(heat->model)};

@@ -88,7 +88,7 @@ Result<void> examine(InfoReport& report, const Model& model, const Task& task) {
     add_attributes(report, model.meshes[i]);
   }
   const Result<measure::Shape> shape = measure::shape_of(model, task);
-  if (!shape) return fail(shape.error());
+  LODESTONE_TRY(shape);
   report.topology = shape->topology;
   report.area = shape->area;
   report.volume = shape->volume;
@@ -152,21 +152,19 @@ std::string table_of(const InfoReport& report) {
 
 Result<ExitCode> run_info(const Arguments& arguments, Console& console) {
   const Result<LengthRules> lengths = length_rules(arguments);
-  if (!lengths) return fail(lengths.error());
+  LODESTONE_TRY(lengths);
   InfoReport report;
   report.path = arguments.inputs.front();
   const Result<VolumeRequest> volume = volume_request(arguments);
-  if (!volume) return fail(volume.error());
+  LODESTONE_TRY(volume);
   Result<Model> model = read_input(report.path, console, console.task().part(0.5, "reading"), {}, *volume);
-  if (!model) return fail(model.error());
+  LODESTONE_TRY(model);
   apply_unit(*model, *lengths);
   report.unit = unit_name(model->meters_per_unit);
   report.file_vertices = model->file_vertices;
   report.file_triangles = model->file_triangles;
   report.warnings = model->warnings;
-  if (const Result<void> examined = examine(report, *model, console.task().part(0.5, "counting")); !examined) {
-    return fail(examined.error());
-  }
+  LODESTONE_TRY(examine(report, *model, console.task().part(0.5, "counting")));
   report.levels = io::levels_in_file(report.path);
   arguments.has("--json") ? console.result(to_json(report)) : console.table(table_of(report));
   return ExitCode::done;

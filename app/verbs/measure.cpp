@@ -31,7 +31,7 @@ Result<std::optional<measure::AttributeOptions>> attribute_options(const Argumen
   options.seed = distance.seed;
   if (arguments.has("--uv-set")) {
     const Result<std::uint64_t> set = arguments.count("--uv-set");
-    if (!set) return fail(set.error());
+    LODESTONE_TRY(set);
     options.uv_set = static_cast<std::uint32_t>(std::min<std::uint64_t>(*set, kNone));
   }
   return std::optional(options);
@@ -41,7 +41,7 @@ Result<std::optional<measure::AttributeOptions>> attribute_options(const Argumen
 Result<void> decode_textures(Model& a, Model& b, const Console& console, const Task& task) {
   std::vector<std::string> warnings;
   for (Model* model : {&a, &b}) {
-    if (Result<void> decoded = io::decode_base_colors(*model, warnings, task); !decoded) return decoded;
+    LODESTONE_TRY(io::decode_base_colors(*model, warnings, task));
   }
   for (const std::string& warning : warnings) console.note(warning);
   return {};
@@ -55,7 +55,7 @@ Result<std::optional<measure::ImageOptions>> image_options(const Arguments& argu
   }
   measure::ImageOptions options;
   const Result<std::uint64_t> views = arguments.count("--views");
-  if (!views) return fail(views.error());
+  LODESTONE_TRY(views);
   for (const unsigned possible : {4U, 6U, 8U, 12U, 20U}) {
     if (*views == possible) options.views = static_cast<int>(possible);
   }
@@ -66,7 +66,7 @@ Result<std::optional<measure::ImageOptions>> image_options(const Arguments& argu
 Result<measure::ImageDeviation> compare_pictures(const Model& a, const Model& b, const measure::ImageOptions& options,
                                                  const Task& task) {
   const Result<measure::ImageReference> reference = measure::ImageReference::create(a, options, task.part(0.5));
-  if (!reference) return fail(reference.error());
+  LODESTONE_TRY(reference);
   return reference->deviation_of(b, task.part(0.5));
 }
 
@@ -91,7 +91,7 @@ Result<void> bound_further(measure::Distance& known, const measure::Reference& r
     options.least_tolerance = length;
     options.queries = std::uint64_t{1} << 60;
     const Result<measure::Distance> further = reference.distance_to(b, options, task);
-    if (!further) return fail(further.error());
+    LODESTONE_TRY(further);
     known.forward = joined(known.forward, further->forward);
     known.backward = joined(known.backward, further->backward);
   }
@@ -104,11 +104,11 @@ Result<void> bound_further(measure::Distance& known, const measure::Reference& r
 Result<measure::Distance> measure_distance(const Model& a, const Model& b, const measure::DistanceOptions& options,
                                            const std::vector<LengthArgument>& bounded, const Task& task) {
   const Result<measure::Reference> reference = measure::Reference::create(a, task.part(0.1));
-  if (!reference) return fail(reference.error());
+  LODESTONE_TRY(reference);
   double length = 0;  // of --bounded
   if (!bounded.empty()) {
     const Result<std::vector<double>> lengths = to_model_units(bounded, a, reference->diagonal());
-    if (!lengths) return fail(lengths.error());
+    LODESTONE_TRY(lengths);
     length = lengths->front();
     if (length < 1e-9 * reference->diagonal()) {
       return fail(ErrorCode::bad_argument, "--bounded is too small", {}, "use at least 1e-9 of the diagonal");
@@ -116,9 +116,7 @@ Result<measure::Distance> measure_distance(const Model& a, const Model& b, const
   }
   Result<measure::Distance> distance = reference->distance_to(b, options, task.part(length > 0 ? 0.4 : 0.9));
   if (!distance || length == 0) return distance;
-  if (Result<void> ok = bound_further(*distance, *reference, b, length, options, task.part(0.5)); !ok) {
-    return fail(ok.error());
-  }
+  LODESTONE_TRY(bound_further(*distance, *reference, b, length, options, task.part(0.5)));
   return distance;
 }
 
@@ -134,26 +132,26 @@ struct MeasurePlan {
 Result<MeasurePlan> plan_of(const Arguments& arguments) {
   MeasurePlan plan;
   const Result<LengthRules> lengths = length_rules(arguments);
-  if (!lengths) return fail(lengths.error());
+  LODESTONE_TRY(lengths);
   plan.lengths = *lengths;
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
-  if (!distance) return fail(distance.error());
+  LODESTONE_TRY(distance);
   plan.distance = *distance;
   if (arguments.has("--bounded")) {
     Result<std::vector<LengthArgument>> bounded = length_list(arguments, "--bounded", plan.lengths);
-    if (!bounded) return fail(bounded.error());
+    LODESTONE_TRY(bounded);
     if (bounded->size() > 1) return fail(ErrorCode::bad_argument, "--bounded takes one value");
     plan.bounded = std::move(*bounded);
   }
   const auto attributes = attribute_options(arguments, plan.distance);
-  if (!attributes) return fail(attributes.error());
+  LODESTONE_TRY(attributes);
   plan.attributes = *attributes;
   const auto image = image_options(arguments);
-  if (!image) return fail(image.error());
+  LODESTONE_TRY(image);
   plan.image = *image;
   if (arguments.has("--heat")) {
     plan.heat = arguments.text("--heat");
-    if (Result<void> checked = check_heat_output(plan.heat, arguments.inputs); !checked) return fail(checked.error());
+    LODESTONE_TRY(check_heat_output(plan.heat, arguments.inputs));
   }
   return plan;
 }
@@ -164,30 +162,30 @@ Result<void> measure_models(MeasureReport& report, Model& a, Model& b, const Mea
   const double extras = (plan.attributes ? 0.4 : 0) + (plan.image ? 0.2 : 0) + (plan.heat.empty() ? 0 : 0.2);
   const Result<measure::Distance> distance =
       measure_distance(a, b, plan.distance, plan.bounded, task.part(0.95 - extras, "measuring"));
-  if (!distance) return fail(distance.error());
+  LODESTONE_TRY(distance);
   report.distance = *distance;
   const Task counting = task.part(0.05, "counting");
   const Result<measure::Shape> shape_a = measure::shape_of(a, counting);
   const Result<measure::Shape> shape_b = shape_a ? measure::shape_of(b, counting) : shape_a;
-  if (!shape_b) return fail(shape_b.error());
+  LODESTONE_TRY(shape_b);
   report.shape_a = *shape_a;
   report.shape_b = *shape_b;
   if (plan.attributes || plan.image) {
-    if (Result<void> decoded = decode_textures(a, b, console, task); !decoded) return decoded;
+    LODESTONE_TRY(decode_textures(a, b, console, task));
   }
   if (plan.attributes) {
     const auto found = measure::attribute_deviation(a, b, *plan.attributes, task.part(0.4, "measuring attributes"));
-    if (!found) return fail(found.error());
+    LODESTONE_TRY(found);
     report.attributes = *found;
   }
   if (plan.image) {
     const auto found = compare_pictures(a, b, *plan.image, task.part(0.2, "drawing"));
-    if (!found) return fail(found.error());
+    LODESTONE_TRY(found);
     report.image = *found;
   }
   if (!plan.heat.empty()) {
     const Result<HeatReport> heat = write_heat(a, b, plan.heat, console, task.part(0.2, "colouring"));
-    if (!heat) return fail(heat.error());
+    LODESTONE_TRY(heat);
     report.heat = *heat;
   }
   return {};
@@ -197,25 +195,23 @@ Result<void> measure_models(MeasureReport& report, Model& a, Model& b, const Mea
 
 Result<ExitCode> run_measure(const Arguments& arguments, Console& console) {
   const Result<MeasurePlan> plan = plan_of(arguments);
-  if (!plan) return fail(plan.error());
+  LODESTONE_TRY(plan);
   Stopwatch watch;
   MeasureReport report;
   report.a = arguments.inputs[0];
   report.b = arguments.inputs[1];
   Result<Model> a = read_input(report.a, console, console.task().part(0.15, "reading A"));
-  if (!a) return fail(a.error());
+  LODESTONE_TRY(a);
   Result<Model> b = read_input(report.b, console, console.task().part(0.15, "reading B"));
-  if (!b) return fail(b.error());
+  LODESTONE_TRY(b);
   apply_unit(*a, plan->lengths);
   report.unit = unit_name(a->meters_per_unit);
   if (!plan->heat.empty()) {
     for (const Model* model : {&*a, &*b}) {
-      if (const Result<void> kept = io::check_replaced(*model, plan->heat); !kept) return fail(kept.error());
+      LODESTONE_TRY(io::check_replaced(*model, plan->heat));
     }
   }
-  if (const Result<void> measured = measure_models(report, *a, *b, *plan, console); !measured) {
-    return fail(measured.error());
-  }
+  LODESTONE_TRY(measure_models(report, *a, *b, *plan, console));
   report.seconds = watch.total();
   arguments.has("--json") ? console.result(to_json(report)) : console.table(table_of(report));
   return ExitCode::done;

@@ -35,7 +35,7 @@ Result<std::string> picture_output(const Arguments& arguments) {
 
 Result<Model> read_drawn_level(const std::string& input, std::size_t level, std::vector<std::string>& warnings,
                                const Console& console, const Task& task, const VolumeRequest& volume) {
-  if (const Result<void> ok = check_level(input, level); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_level(input, level));
   io::ReadOptions options;
   options.draw_level = level;
   Result<Model> model = read_input(input, console, task, options, volume);
@@ -53,11 +53,11 @@ Result<Model> read_drawn_level(const std::string& input, std::size_t level, std:
 // The picture must not replace a file of the input. Model::files doesn't name the textures of OBJ and PLY: these show
 // by their bytes.
 Result<void> check_picture_kept(const Model& model, const std::string& output) {
-  if (const Result<void> kept = io::check_replaced(model, output); !kept) return kept;
+  LODESTONE_TRY(io::check_replaced(model, output));
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(output, ignored)) return {};
   const Result<std::string> there = read_file(output);
-  if (!there) return fail(there.error());
+  LODESTONE_TRY(there);
   for (const Material& material : model.materials) {
     if (material.base_color_texture == nullptr) continue;
     const std::vector<std::byte>& texture = material.base_color_texture->encoded;

@@ -17,7 +17,7 @@ Result<chain::RemeshOptions> remesh_options(const Arguments& arguments, const Le
                                             std::vector<std::string>& warnings) {
   chain::RemeshOptions options;
   const Result<std::string> target = given_target(arguments, {"--triangles", "--error"}, "choose one");
-  if (!target) return fail(target.error());
+  LODESTONE_TRY(target);
   options.then_collapse = arguments.has("--then-collapse");
   options.prune = arguments.has("--prune");
   if (options.prune && !options.then_collapse) {
@@ -25,28 +25,28 @@ Result<chain::RemeshOptions> remesh_options(const Arguments& arguments, const Le
   }
   if (arguments.has("--resolution") || target->empty()) {
     const Result<std::uint32_t> resolution = resolution_of(arguments);
-    if (!resolution) return fail(resolution.error());
+    LODESTONE_TRY(resolution);
     options.resolution = *resolution;
   }
   if (*target == "--triangles") {
     const Result<std::uint64_t> count = arguments.count("--triangles", 4, std::uint64_t{1} << 32);
-    if (!count) return fail(count.error());
+    LODESTONE_TRY(count);
     options.triangles = *count;
   }
   if (*target == "--error") {
     const Result<std::vector<LengthArgument>> error = length_list(arguments, "--error", lengths);
-    if (!error) return fail(error.error());
+    LODESTONE_TRY(error);
     if (error->size() != 1) return fail(ErrorCode::bad_argument, "--error takes one value here");
     const Result<std::vector<double>> units = to_model_units(*error, model, bounds_of(model).diagonal());
-    if (!units) return fail(units.error());
+    LODESTONE_TRY(units);
     options.error = units->front();
     doubt_lengths("--error", *error, model, warnings);
   }
   const Result<chain::VoxelOptions> voxel = voxel_options(arguments, lengths, model);
-  if (!voxel) return fail(voxel.error());
+  LODESTONE_TRY(voxel);
   options.voxel = *voxel;
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
-  if (!distance) return fail(distance.error());
+  LODESTONE_TRY(distance);
   options.distance = *distance;
   return options;
 }
@@ -55,21 +55,21 @@ Result<chain::RemeshOptions> remesh_options(const Arguments& arguments, const Le
 
 Result<ExitCode> run_remesh(const Arguments& arguments, Console& console) {
   Result<VoxelRequest> request = voxel_request(arguments, "remesh");
-  if (!request) return fail(request.error());
+  LODESTONE_TRY(request);
   const Result<LengthRules> lengths = length_rules(arguments);
-  if (!lengths) return fail(lengths.error());
+  LODESTONE_TRY(lengths);
   const Result<chain::SurfaceAttributeOptions> attributes = surface_attributes(arguments);
-  if (!attributes) return fail(attributes.error());
+  LODESTONE_TRY(attributes);
   Stopwatch watch;
   VoxelReport report;
   Result<Model> model = read_solid(*request, report, console);
-  if (!model) return fail(model.error());
+  LODESTONE_TRY(model);
   apply_unit(*model, *lengths);
   report.unit = unit_name(model->meters_per_unit);
   report.read_seconds = watch.lap();
   std::vector<std::string> warnings;
   const Result<chain::RemeshOptions> options = remesh_options(arguments, *lengths, *model, warnings);
-  if (!options) return fail(options.error());
+  LODESTONE_TRY(options);
   tell(report, warnings, console);
   Result<chain::RemeshResult> result = chain::remesh(*model, *options, console.task().part(0.8, "remeshing"));
   if (!result) return fail(with_place(result.error(), report.input));
@@ -79,16 +79,15 @@ Result<ExitCode> run_remesh(const Arguments& arguments, Console& console) {
   report.method = result->level.method;
   report.shortfall = result->shortfall;
   if (result->measured) report.error = result->level.error;
-  const Result<void> decoded = decode_for(*attributes, *model, result->warnings, console.task());
-  if (!decoded) return fail(decoded.error());
+  LODESTONE_TRY(decode_for(*attributes, *model, result->warnings, console.task()));
   const Result<chain::AttributeSource> source = chain::AttributeSource::create(*model, *attributes, console.task());
-  if (!source) return fail(source.error());
+  LODESTONE_TRY(source);
   if (const Result<void> added = source->add_to(result->level.model, 0, console.task()); !added) {
     return fail(with_place(added.error(), report.input));
   }
   tell(report, result->warnings, console);
   const Result<void> done = finish(result->level.model, *request, watch, report, console);
-  if (!done) return fail(done.error());
+  LODESTONE_TRY(done);
   if (report.shortfall.empty()) return ExitCode::done;
   console.shortfall(fmt::format("{}: {}", report.input, report.shortfall));
   return ExitCode::fell_short;

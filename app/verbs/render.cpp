@@ -52,15 +52,15 @@ Result<Request> request_of(const Arguments& arguments) {
   Request request;
   request.input = arguments.inputs.front();
   request.shading = shading_of(arguments.text("--shading"));
-  if (const Result<void> read = read_heat(arguments, request); !read) return fail(read.error());
+  LODESTONE_TRY(read_heat(arguments, request));
   const Result<CameraChoice> camera = camera_choice(arguments);
-  if (!camera) return fail(camera.error());
+  LODESTONE_TRY(camera);
   const Result<render::RenderOptions> options = render_options(arguments);
-  if (!options) return fail(options.error());
+  LODESTONE_TRY(options);
   const Result<std::uint64_t> level = arguments.count("--level", 0, 1024);
-  if (!level) return fail(level.error());
+  LODESTONE_TRY(level);
   const Result<std::string> output = picture_output(arguments);
-  if (!output) return fail(output.error());
+  LODESTONE_TRY(output);
   request.camera = *camera;
   request.options = *options;
   request.level = static_cast<std::size_t>(*level);
@@ -91,9 +91,9 @@ std::array<double, 3> triple(Vec3d v) { return {v.x, v.y, v.z}; }
 
 Result<ExitCode> run_render(const Arguments& arguments, Console& console) {
   if (arguments.has("--sheet")) return run_sheet(arguments, console);
-  if (const Result<void> one = check_one_picture(arguments); !one) return fail(one.error());
+  LODESTONE_TRY(check_one_picture(arguments));
   const Result<Request> asked = request_of(arguments);
-  if (!asked) return fail(asked.error());
+  LODESTONE_TRY(asked);
   const Request& request = *asked;
   RenderReport report;
   report.input = request.input;
@@ -102,21 +102,21 @@ Result<ExitCode> run_render(const Arguments& arguments, Console& console) {
 
   Stopwatch watch;
   const Result<VolumeRequest> volume = volume_request(arguments);
-  if (!volume) return fail(volume.error());
+  LODESTONE_TRY(volume);
   const Result<LengthRules> lengths = length_rules(arguments);
-  if (!lengths) return fail(lengths.error());
+  LODESTONE_TRY(lengths);
   Result<Model> model = read_drawn_level(request.input, request.level, report.warnings, console,
                                          console.task().part(0.5, "reading"), *volume);
-  if (!model) return fail(model.error());
+  LODESTONE_TRY(model);
   apply_unit(*model, *lengths);
-  if (const Result<void> kept = check_picture_kept(*model, request.output); !kept) return fail(kept.error());
+  LODESTONE_TRY(check_picture_kept(*model, request.output));
   report.read_seconds = watch.lap();
 
   render::SceneOptions scene_options;
   scene_options.attribute = request.attribute;
   const Result<render::Scene> scene =
       render::Scene::create(*model, scene_options, console.task().part(0.2, "preparing"));
-  if (!scene) return fail(scene.error());
+  LODESTONE_TRY(scene);
   report.triangles = scene->triangle_count();
   report.prepare_seconds = watch.lap();
 
@@ -139,13 +139,13 @@ Result<ExitCode> run_render(const Arguments& arguments, Console& console) {
   report.forward = triple(camera.forward);
   report.up = triple(camera.up);
   const Result<Pixels> picture = render::render(*scene, camera, options, console.task().part(0.2, "drawing"));
-  if (!picture) return fail(picture.error());
+  LODESTONE_TRY(picture);
   report.width = picture->width;
   report.height = picture->height;
   report.draw_seconds = watch.lap();
 
   const Result<std::uint64_t> written = io::write_picture(*picture, request.output);
-  if (!written) return fail(written.error());
+  LODESTONE_TRY(written);
   console.wrote(request.output);
   report.bytes = *written;
   report.write_seconds = watch.lap();

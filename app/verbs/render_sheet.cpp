@@ -40,19 +40,19 @@ Result<void> check_options(const Arguments& arguments) {
 }
 
 Result<Request> request_of(const Arguments& arguments) {
-  if (const Result<void> ok = check_options(arguments); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_options(arguments));
   Request request;
   request.shading = shading_of(arguments.text("--shading"));
   const Result<CameraChoice> camera = camera_choice(arguments);
-  if (!camera) return fail(camera.error());
+  LODESTONE_TRY(camera);
   const Result<render::RenderOptions> picture = render_options(arguments);
-  if (!picture) return fail(picture.error());
+  LODESTONE_TRY(picture);
   const Result<measure::View> view = view_of(arguments);
-  if (!view) return fail(view.error());
+  LODESTONE_TRY(view);
   const Result<double> pixels = arguments.positive("--pixels");
-  if (!pixels) return fail(pixels.error());
+  LODESTONE_TRY(pixels);
   Result<std::string> output = picture_output(arguments);
-  if (!output) return fail(output.error());
+  LODESTONE_TRY(output);
   request.output = std::move(*output);
   request.options.picture = *picture;
   if (!arguments.has("--size")) {
@@ -64,10 +64,10 @@ Result<Request> request_of(const Arguments& arguments) {
   request.options.up = camera->up;
   request.options.view = *view;
   const Result<LengthRules> lengths = length_rules(arguments);
-  if (!lengths) return fail(lengths.error());
+  LODESTONE_TRY(lengths);
   request.lengths = *lengths;
   Result<VolumeRequest> volume = volume_request(arguments);
-  if (!volume) return fail(volume.error());
+  LODESTONE_TRY(volume);
   request.volume = std::move(*volume);
   request.volume.asked = false;  // of several files each is what its name says
   request.options.pixels = *pixels;
@@ -115,23 +115,23 @@ Result<std::vector<report::SheetLevel>> read_levels(const std::vector<Source>& s
     const Task task = all.part(1.0 / static_cast<double>(sources.size()), fmt::format("level {}", levels.size()));
     Result<Model> model =
         read_drawn_level(source.file, source.level, report.warnings, console, task.part(0.3), request.volume);
-    if (!model) return fail(model.error());
+    LODESTONE_TRY(model);
     apply_unit(*model, request.lengths);
-    if (const Result<void> kept = check_picture_kept(*model, request.output); !kept) return fail(kept.error());
+    LODESTONE_TRY(check_picture_kept(*model, request.output));
     double error = 0;
     if (!reference) {
       Result<measure::Reference> made = measure::Reference::create(*model, task.part(0.3));
-      if (!made) return fail(made.error());
+      LODESTONE_TRY(made);
       reference.emplace(std::move(*made));
       report.unit = unit_name(model->meters_per_unit);
     } else {
       const Result<measure::Distance> distance = reference->distance_to(*model, {}, task.part(0.3));
-      if (!distance) return fail(distance.error());
+      LODESTONE_TRY(distance);
       const bool ladder = source.file == sources.front().file;
       error = ladder ? std::max(levels.back().error, distance->trusted_max()) : distance->trusted_max();
     }
     Result<render::Scene> scene = render::Scene::create(*model, {}, task.part(0.3));
-    if (!scene) return fail(scene.error());
+    LODESTONE_TRY(scene);
     levels.push_back({std::move(*scene), error});
   }
   return levels;
@@ -175,22 +175,22 @@ OptionGroup sheet_group() {
 
 Result<ExitCode> run_sheet(const Arguments& arguments, Console& console) {
   Result<Request> request = request_of(arguments);
-  if (!request) return fail(request.error());
+  LODESTONE_TRY(request);
   const Result<std::vector<Source>> sources = sources_of(arguments.inputs);
-  if (!sources) return fail(sources.error());
+  LODESTONE_TRY(sources);
   Stopwatch watch;
   SheetReport report;
   report.file = request->output;
   const Result<std::vector<report::SheetLevel>> levels = read_levels(*sources, *request, report, console);
-  if (!levels) return fail(levels.error());
+  LODESTONE_TRY(levels);
   report::SheetOptions& options = request->options;
   options.unit = report.unit;
   options.picture.shading = request->shading.value_or(render::default_shading(levels->front().scene));
   report.shading = name_of(options.picture.shading);
   const Result<Pixels> sheet = report::contact_sheet(*levels, options, console.task().part(0.2, "drawing"));
-  if (!sheet) return fail(sheet.error());
+  LODESTONE_TRY(sheet);
   const Result<std::uint64_t> written = io::write_picture(*sheet, report.file);
-  if (!written) return fail(written.error());
+  LODESTONE_TRY(written);
   console.wrote(report.file);
   for (std::size_t i = 0; i < levels->size(); ++i) {
     const report::SheetLevel& level = (*levels)[i];

@@ -24,18 +24,18 @@ Result<Model> make_sphere_of(const Arguments& arguments, std::size_t triangles, 
     return make_sphere(triangles, task);
   }
   const Result<std::uint64_t> level = arguments.count("--level", 0, kMostSphereLevel);
-  if (!level) return fail(level.error());
+  LODESTONE_TRY(level);
   return make_icosphere(static_cast<int>(*level), task);
 }
 
 Result<Model> make_sample(const Arguments& arguments, const Task& task) {
   const std::string& name = arguments.inputs.front();
   const Result<std::uint64_t> seed = arguments.count("--seed");
-  if (!seed) return fail(seed.error());
+  LODESTONE_TRY(seed);
   std::size_t triangles = name == "tower" ? kDefaultTowerTriangles : kDefaultTriangles;
   if (arguments.has("--triangles")) {
     const Result<std::uint64_t> wanted = arguments.count("--triangles", 1, kMostSampleTriangles);
-    if (!wanted) return fail(wanted.error());
+    LODESTONE_TRY(wanted);
     triangles = *wanted;
   }
   if (name == "sphere") return make_sphere_of(arguments, triangles, task);
@@ -69,9 +69,9 @@ Result<ExitCode> run_file_sample(const Arguments& arguments, SampleReport& repor
   }
   if (const Result<void> checked = check_place(report.file, {}); !checked) return fail(checked.error());
   const Result<std::uint64_t> seed = arguments.count("--seed");
-  if (!seed) return fail(seed.error());
+  LODESTONE_TRY(seed);
   const Result<std::uint64_t> points = arguments.count("--points", 100, kMostSampleTriangles / 2);
-  if (!points) return fail(points.error());
+  LODESTONE_TRY(points);
   Stopwatch watch;
   const Task making = console.task().part(0.9, "making");
   std::string bytes, what;
@@ -88,9 +88,9 @@ Result<ExitCode> run_file_sample(const Arguments& arguments, SampleReport& repor
   }
   if (making.cancelled()) return cancelled_error("making the sample");
   Result<OutputFile> file = OutputFile::create(report.file);
-  if (!file) return fail(file.error());
+  LODESTONE_TRY(file);
   file->write(bytes);
-  if (const Result<void> done = file->commit(); !done) return fail(done.error());
+  LODESTONE_TRY(file->commit());
   console.wrote(report.file);
   report.bytes = bytes.size();
   report.seconds = watch.total();
@@ -112,16 +112,15 @@ Result<ExitCode> run_sample(const Arguments& arguments, Console& console) {
                 fmt::format("add one, such as -o {}{}", report.sample, ending));
   }
   report.file = arguments.text("--output");
-  if (const Result<void> ok = check_options(arguments); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_options(arguments));
   if (is_file) return run_file_sample(arguments, report, console);
-  const Result<void> checked = check_output(report.file, {}, io::Compression::none);
-  if (!checked) return fail(checked.error());
+  LODESTONE_TRY(check_output(report.file, {}, io::Compression::none));
   Stopwatch watch;
   const Result<Model> model = make_sample(arguments, console.task().part(0.5, "making"));
-  if (!model) return fail(model.error());
+  LODESTONE_TRY(model);
   if (console.task().cancelled()) return cancelled_error("making the sample");
   const Result<io::WriteReport> written = io::write_model(*model, report.file, {}, console.task().part(0.5, "writing"));
-  if (!written) return fail(written.error());
+  LODESTONE_TRY(written);
   console.wrote(report.file);
   for (const std::string& warning : written->warnings) console.note(fmt::format("{}: {}", report.file, warning));
   report.triangles = drawn_triangles(*model);

@@ -31,7 +31,7 @@ struct SimplifyPlan {
 Result<void> check_target(const Arguments& arguments) {
   const std::string remedy = "give one target: --triangles N, --ratio 10% or --error 0.1%";
   const Result<std::string> target = given_target(arguments, {"--ratio", "--triangles", "--error"}, remedy);
-  if (!target) return fail(target.error());
+  LODESTONE_TRY(target);
   if (target->empty()) return fail(ErrorCode::bad_argument, "simplify needs a target", {}, remedy);
   const std::string text = arguments.text(*target);
   if (text.find(',') == std::string::npos || (*target == "--triangles" && count_in(text))) return {};
@@ -43,31 +43,31 @@ Result<void> check_target(const Arguments& arguments) {
 }
 
 Result<SimplifyPlan> plan_of(const Arguments& arguments) {
-  if (const Result<void> one = check_target(arguments); !one) return fail(one.error());
+  LODESTONE_TRY(check_target(arguments));
   SimplifyPlan plan;
   const Result<LengthRules> lengths = length_rules(arguments);
-  if (!lengths) return fail(lengths.error());
+  LODESTONE_TRY(lengths);
   plan.lengths = *lengths;
   if (arguments.has("--ratio")) {
     Result<std::vector<double>> ratio = ratio_list(arguments, "--ratio");
-    if (!ratio) return fail(ratio.error());
+    LODESTONE_TRY(ratio);
     plan.ratio = std::move(*ratio);
   }
   if (arguments.has("--triangles")) {
     const Result<std::uint64_t> triangles = arguments.count("--triangles", 1);
-    if (!triangles) return fail(triangles.error());
+    LODESTONE_TRY(triangles);
     plan.triangles = {*triangles};
   }
   if (arguments.has("--error")) {
     Result<std::vector<LengthArgument>> error = length_list(arguments, "--error", plan.lengths);
-    if (!error) return fail(error.error());
+    LODESTONE_TRY(error);
     plan.error = std::move(*error);
   }
   Result<ConstraintPlan> constraints = constraints_of(arguments, plan.lengths);
-  if (!constraints) return fail(constraints.error());
+  LODESTONE_TRY(constraints);
   plan.constraints = std::move(*constraints);
   const Result<measure::DistanceOptions> distance = distance_options(arguments);
-  if (!distance) return fail(distance.error());
+  LODESTONE_TRY(distance);
   plan.distance = *distance;
   plan.force = arguments.has("--force");
   plan.effort = effort_of(arguments, plan.error.empty() ? chain::Effort::fast : chain::Effort::normal);
@@ -87,14 +87,14 @@ Result<chain::SimplifyModelOptions> options_for(const SimplifyPlan& plan, const 
   }
   Result<chain::SimplifyConstraints> constraints =
       plan.constraints.for_model(model, options.target_triangles, warnings, console.task());
-  if (!constraints) return fail(constraints.error());
+  LODESTONE_TRY(constraints);
   options.constraints = std::move(*constraints);
   if (!plan.ratio.empty()) {
     console.note(fmt::format("keeping {} of {} triangles", percent(plan.ratio[0]), with_separators(triangles)));
   } else if (!plan.error.empty()) {
     const double diagonal = bounds_of(model).diagonal();
     const Result<std::vector<double>> errors = to_model_units(plan.error, model, diagonal);
-    if (!errors) return fail(errors.error());
+    LODESTONE_TRY(errors);
     options.max_error = errors->front();
     doubt_lengths("--error", plan.error, model, warnings);
     console.detail(fmt::format("--error {} is {} in model units (diagonal {})", plan.error[0].text,
@@ -132,7 +132,7 @@ std::string table_of(const SimplifyReport& report) {
 Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
   const std::string& input = arguments.inputs.front();
   const Result<SimplifyPlan> plan = plan_of(arguments);
-  if (!plan) return fail(plan.error());
+  LODESTONE_TRY(plan);
   if (!arguments.has("--output")) return missing_output("simplify", input);
   SimplifyReport report;
   report.input = input;
@@ -143,15 +143,15 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
   }
 
   const Result<VolumeRequest> volume = volume_request(arguments);
-  if (!volume) return fail(volume.error());
+  LODESTONE_TRY(volume);
   const Result<std::uint64_t> level = arguments.count("--level", 0, 1024);
-  if (!level) return fail(level.error());
-  if (const Result<void> there = check_level(input, *level); !there) return fail(there.error());
+  LODESTONE_TRY(level);
+  LODESTONE_TRY(check_level(input, *level));
   Stopwatch watch;
   Result<Model> model = read_input(input, console, console.task().part(0.05, "reading"),
                                    {.levels = false, .draw_level = *level}, *volume);
-  if (!model) return fail(model.error());
-  if (const Result<void> kept = io::check_replaced(*model, report.output); !kept) return fail(kept.error());
+  LODESTONE_TRY(model);
+  LODESTONE_TRY(io::check_replaced(*model, report.output));
   apply_unit(*model, plan->lengths);
   report.read_seconds = watch.lap();
   report.triangles_in = drawn_triangles(*model);
@@ -161,18 +161,18 @@ Result<ExitCode> run_simplify(const Arguments& arguments, Console& console) {
   std::vector<std::string> warnings;
   const Result<chain::SimplifyModelOptions> options =
       options_for(*plan, *model, report.triangles_in, console, warnings);
-  if (!options) return fail(options.error());
+  LODESTONE_TRY(options);
   for (const std::string& warning : warnings) {
     console.note(fmt::format("{}: {}", input, warning));
     report.warnings.push_back(warning);
   }
   const Result<chain::SimplifyModelResult> result =
       chain::simplify_model(*model, *options, console.task().part(0.9, "simplifying"));
-  if (!result) return fail(result.error());
+  LODESTONE_TRY(result);
   watch.lap();
   const Result<io::WriteReport> written = io::write_model(
       result->level.model, report.output, io::WriteOptions{compression, {}}, console.task().part(0.05, "writing"));
-  if (!written) return fail(written.error());
+  LODESTONE_TRY(written);
   console.wrote(report.output);
   report.write_seconds = watch.lap();
 

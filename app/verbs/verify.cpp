@@ -45,29 +45,29 @@ Result<VerifyReport> verify_levels(const BuildReport& report, const measure::Dis
                                    const Task& task) {
   const double share = 1.0 / static_cast<double>(report.levels.size());
   const Result<Model> original = read_level(report, 0, task.part(share / 2));
-  if (!original) return fail(original.error());
+  LODESTONE_TRY(original);
   if (drawn_triangles(*original) != report.triangles) {
     return not_as_told(report.levels.front(),
                        fmt::format("{} triangles were written, read back they are {}",
                                    with_separators(report.triangles), with_separators(drawn_triangles(*original))));
   }
   const Result<measure::Reference> reference = measure::Reference::create(*original, task.part(share / 2));
-  if (!reference) return fail(reference.error());
+  LODESTONE_TRY(reference);
   VerifyReport out;
   for (std::size_t k = 1; k < report.levels.size(); ++k) {
     const LevelReport& level = report.levels[k];
     if (level.triangles == 0) continue;
     const Result<Model> model = read_level(report, k, task.part(share / 4));
-    if (!model) return fail(model.error());
+    LODESTONE_TRY(model);
     if (drawn_triangles(*model) != level.triangles) {
       return not_as_told(level,
                          fmt::format("{} triangles were told, read back they are {}", with_separators(level.triangles),
                                      with_separators(drawn_triangles(*model))));
     }
     const Result<measure::Distance> found = reference->distance_to(*model, distance, task.part(share * 3 / 4));
-    if (!found) return fail(found.error());
+    LODESTONE_TRY(found);
     const Result<double> off = difference(level, *found);
-    if (!off) return fail(off.error());
+    LODESTONE_TRY(off);
     out.largest_difference = std::max(out.largest_difference, *off);
     ++out.levels;
   }

@@ -54,19 +54,18 @@ Result<VoxelRequest> voxel_request(const Arguments& arguments, const char* verb)
   if (!arguments.has("--output")) return missing_output(verb, request.input);
   request.output = arguments.text("--output");
   Result<VolumeRequest> volume = volume_request(arguments);
-  if (!volume) return fail(volume.error());
+  LODESTONE_TRY(volume);
   request.volume = std::move(*volume);
   request.compression = compression_of(arguments);
   request.json = arguments.has("--json");
-  const Result<void> checked = check_output(request.output, {request.input}, request.compression);
-  if (!checked) return fail(checked.error());
+  LODESTONE_TRY(check_output(request.output, {request.input}, request.compression));
   return request;
 }
 
 Result<Model> read_solid(const VoxelRequest& request, VoxelReport& report, const Console& console) {
   Result<Model> model = read_input(request.input, console, console.task().part(0.1, "reading"), {}, request.volume);
   if (!model) return model;
-  if (const Result<void> kept = io::check_replaced(*model, request.output); !kept) return fail(kept.error());
+  LODESTONE_TRY(io::check_replaced(*model, request.output));
   report.input = request.input;
   report.output = request.output;
   report.triangles_in = drawn_triangles(*model);
@@ -98,7 +97,7 @@ Result<void> finish(const Model& model, const VoxelRequest& request, Stopwatch& 
   report.triangles = drawn_triangles(model);
   const Result<io::WriteReport> written =
       io::write_model(model, request.output, {request.compression, {}}, console.task().part(0.1, "writing"));
-  if (!written) return fail(written.error());
+  LODESTONE_TRY(written);
   console.wrote(request.output);
   report.bytes = written->total_bytes;
   for (const std::string& warning : written->warnings) {

@@ -7,20 +7,20 @@ namespace lodestone::app {
 
 Result<ExitCode> run_voxelize(const Arguments& arguments, Console& console) {
   const Result<VoxelRequest> request = voxel_request(arguments, "voxelize");
-  if (!request) return fail(request.error());
+  LODESTONE_TRY(request);
   const Result<std::uint32_t> resolution = resolution_of(arguments);
-  if (!resolution) return fail(resolution.error());
+  LODESTONE_TRY(resolution);
   const Result<LengthRules> lengths = length_rules(arguments);
-  if (!lengths) return fail(lengths.error());
+  LODESTONE_TRY(lengths);
   Stopwatch watch;
   VoxelReport report;
   Result<Model> model = read_solid(*request, report, console);
-  if (!model) return fail(model.error());
+  LODESTONE_TRY(model);
   apply_unit(*model, *lengths);
   report.unit = unit_name(model->meters_per_unit);
   report.read_seconds = watch.lap();
   const Result<chain::VoxelOptions> voxel = voxel_options(arguments, *lengths, *model);
-  if (!voxel) return fail(voxel.error());
+  LODESTONE_TRY(voxel);
   Result<chain::FillChoice> choice = chain::choose_fill(*model, voxel->fill, console.task());
   if (!choice) return fail(with_place(choice.error(), report.input));
   choice->close = voxel->close;
@@ -33,10 +33,10 @@ Result<ExitCode> run_voxelize(const Arguments& arguments, Console& console) {
   report.voxelize_seconds = solid->seconds.slicing + solid->seconds.filling;
   report.prepare_seconds = watch.lap() - report.voxelize_seconds;
   Result<Mesh> mesh = voxel::cube_faces(solid->volume, console.task().part(0.4, "making cubes"));
-  if (!mesh) return fail(mesh.error());
+  LODESTONE_TRY(mesh);
   const Model cubes = make_model(std::move(*mesh), *model);
   report.isosurface_seconds = watch.lap();
-  if (const Result<void> done = finish(cubes, *request, watch, report, console); !done) return fail(done.error());
+  LODESTONE_TRY(finish(cubes, *request, watch, report, console));
   return ExitCode::done;
 }
 

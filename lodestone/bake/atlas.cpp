@@ -97,8 +97,8 @@ void add_coordinates(const std::vector<FlatChart>& charts, const Packing& packin
 }  // namespace
 
 Result<Atlas> make_atlas(const Mesh& target, const AtlasOptions& options, Task task) {
-  if (const Result<void> ok = check(target, options); !ok) return fail(ok.error());
-  if (const Result<void> ok = validate(target, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(target, options));
+  LODESTONE_TRY(validate(target, task));
   task = task.part(1, "atlas");
   const detail::Neighbors neighbors = detail::neighbors_of(target, task);
   const std::vector<std::uint32_t> rough = detail::make_charts(target, neighbors, task.part(0.5));

@@ -251,8 +251,8 @@ Pixels blank(std::uint32_t size) {
 }  // namespace
 
 Result<Baked> bake_textures(const Mesh& target, const BakeSource& source, const BakeOptions& options, Task task) {
-  if (const Result<void> ok = check(target, options); !ok) return fail(ok.error());
-  if (const Result<void> ok = validate(target, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(target, options));
+  LODESTONE_TRY(validate(target, task));
   const std::uint32_t size = options.texture_size;
   Baked out;
   out.mesh = target;

@@ -47,7 +47,7 @@ struct BakeSource::Data {
 Result<BakeSource> BakeSource::create(const Model& model, Task task) {
   task = task.part(1, "source of attributes");
   Result<spatial::Surface> surface = spatial::flatten(model, task);
-  if (!surface) return fail(surface.error());
+  LODESTONE_TRY(surface);
   auto data = std::make_shared<const Data>(model, std::move(*surface), task);
   if (task.cancelled()) return cancelled_error("baking");
   return BakeSource(std::move(data));

@@ -81,7 +81,7 @@ void set_colors(Mesh& mesh, const std::vector<Tuple>& tuples) {
 Result<Mesh> transfer_attributes(const Mesh& target, const BakeSource& source, const TransferOptions& options,
                                  Task task) {
   if (target.triangles.empty()) return fail(ErrorCode::empty, "the target has no triangle");
-  if (const Result<void> ok = validate(target, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(target, task));
   task = task.part(1, "attributes");
   const std::vector<Tuple> tuples = tuples_of(target, source, task);
   if (task.cancelled()) return cancelled_error("transfer of attributes");

@@ -123,14 +123,14 @@ std::string extension_of(const std::filesystem::path& path) { return lower_case(
 
 Result<std::string> read_file(const std::filesystem::path& path) {
   Result<InputFile> file = InputFile::open(path);
-  if (!file) return fail(file.error());
+  LODESTONE_TRY(file);
   std::string bytes;
   std::size_t want = static_cast<std::size_t>(file->size()) + 1;  // one more, so that the end shows in one read
   while (true) {
     const std::size_t old = bytes.size();
     bytes.resize(old + want);
     const Result<std::size_t> got = file->read(std::as_writable_bytes(std::span(bytes).subspan(old)));
-    if (!got) return fail(got.error());
+    LODESTONE_TRY(got);
     bytes.resize(old + *got);
     if (*got < want) return bytes;
     want = kBufferBytes;
@@ -172,7 +172,7 @@ Result<std::filesystem::path> output_place(const std::filesystem::path& path) {
 
 Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
   const Result<std::filesystem::path> place = output_place(path);
-  if (!place) return fail(place.error());
+  LODESTONE_TRY(place);
   const std::filesystem::path folder = place->has_parent_path() ? place->parent_path() : ".";
   OutputFile file;
   file.path_ = path;
@@ -297,9 +297,9 @@ StagingFolder::~StagingFolder() {
 
 Result<void> StagingFolder::commit() {
   Result<std::vector<Move>> moves = plan_moves();
-  if (!moves) return fail(moves.error());
+  LODESTONE_TRY(moves);
   for (Move& move : *moves) {
-    if (const Result<void> beside = bring_beside(move); !beside) return beside;
+    LODESTONE_TRY(bring_beside(move));
   }
   for (std::size_t i = 0; i < moves->size(); ++i) {
     const Move& move = (*moves)[i];
@@ -330,7 +330,7 @@ Result<std::vector<StagingFolder::Move>> StagingFolder::plan_moves() const {
   std::vector<Move> moves;
   for (const std::filesystem::path& name : names) {
     const Result<std::filesystem::path> place = output_place(folder_ / name);
-    if (!place) return fail(place.error());
+    LODESTONE_TRY(place);
     const bool is_file = std::filesystem::is_regular_file(path() / name, error);
     const mode_t old = is_file ? permissions_at(*place) : 0;
     if (old != 0 && ::chmod((path() / name).c_str(), old) != 0) {

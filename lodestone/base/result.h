@@ -39,8 +39,15 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string what, std::string 
   return tl::unexpected<Error>(Error{code, std::move(what), std::move(where), std::move(remedy)});
 }
 
-/// Hands an error on: `if (!r) return fail(r.error());`
+/// Hands an error on.
 inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(std::move(error)); }
+
+/// Leaves the function with the error of a Result, if it is one: `LODESTONE_TRY(validate(mesh));`, or
+/// `const Result<Mesh> mesh = read(path);` and then `LODESTONE_TRY(mesh);`. The function returns a Result of any type.
+#define LODESTONE_TRY(...)                                                                  \
+  do {                                                                                      \
+    if (const auto& tried = (__VA_ARGS__); !tried) return ::lodestone::fail(tried.error()); \
+  } while (false)
 
 /// The error of a cancelled Task; `operation` says what was stopped.
 inline tl::unexpected<Error> cancelled_error(std::string_view operation) {

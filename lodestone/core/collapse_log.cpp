@@ -183,7 +183,7 @@ Result<void> check(const Mesh& mesh, const CollapseLog& log, std::size_t count, 
     return bad(fmt::format("a list of {} triangles is about {}", list->size(), mesh.triangles.size()));
   }
   if (options.input == Input::valid) return {};
-  if (const Result<void> ok = validate(mesh, task); !ok) return ok;
+  LODESTONE_TRY(validate(mesh, task));
   return validate(log, mesh, task);
 }
 
@@ -195,7 +195,7 @@ Result<ReplayResult> replay(const Mesh& mesh, const CollapseLog& log, std::size_
 
 Result<ReplayResult> replay(const Mesh& mesh, const CollapseLog& log, std::size_t count, const ReplayOptions& options,
                             Task task) {
-  if (const Result<void> ok = check(mesh, log, count, options, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(mesh, log, count, options, task));
   ReplayResult out;
   out.mesh.name = mesh.name;
   out.mesh.offset = mesh.offset;

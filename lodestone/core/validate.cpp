@@ -108,14 +108,14 @@ Result<void> check_indices(const Mesh& mesh, const std::string& where, const Tas
     return bad(where, "{} vertices, {} wedges, {} triangles are more than 32-bit indices can name",
                mesh.positions.size(), mesh.wedge_count(), mesh.triangles.size());
   }
-  if (const Result<void> ok = check_wedges(mesh, where, task); !ok) return ok;
-  if (const Result<void> ok = check_groups(mesh, where, task); !ok) return ok;
+  LODESTONE_TRY(check_wedges(mesh, where, task));
+  LODESTONE_TRY(check_groups(mesh, where, task));
   return check_streams(mesh, where);
 }
 
 Result<void> check_mesh(const Mesh& mesh, const std::string& where, const Task& task) {
-  if (const Result<void> ok = check_places(mesh, where, task); !ok) return ok;
-  if (const Result<void> ok = check_indices(mesh, where, task); !ok) return ok;
+  LODESTONE_TRY(check_places(mesh, where, task));
+  LODESTONE_TRY(check_indices(mesh, where, task));
   if (task.cancelled()) return cancelled_error("validating");  // then chunks were left out
   return {};
 }
@@ -164,14 +164,14 @@ Result<void> check_model(const Model& model, const std::string& before, const Ta
   for (std::size_t i = 0; i < model.meshes.size(); ++i) {
     const Mesh& mesh = model.meshes[i];
     const std::string where = before + label("mesh", i, mesh.name);
-    if (const Result<void> ok = check_mesh(mesh, where, task); !ok) return ok;
+    LODESTONE_TRY(check_mesh(mesh, where, task));
     for (const FaceGroup& group : mesh.groups) {
       if (group.material == kNone || model.materials.empty() || group.material < model.materials.size()) continue;
       return bad(where, "group {} names material {} of {}", &group - mesh.groups.data(), group.material,
                  model.materials.size());
     }
   }
-  if (const Result<void> ok = check_materials(model, before); !ok) return ok;
+  LODESTONE_TRY(check_materials(model, before));
   return check_instances(model, before);
 }
 
@@ -182,7 +182,7 @@ Result<void> validate(const Mesh& mesh, const Task& task) {
 }
 
 Result<void> validate_indices(const Mesh& mesh, const Task& task) {
-  if (const Result<void> ok = check_indices(mesh, mesh.name.empty() ? "mesh" : mesh.name, task); !ok) return ok;
+  LODESTONE_TRY(check_indices(mesh, mesh.name.empty() ? "mesh" : mesh.name, task));
   if (task.cancelled()) return cancelled_error("validating");
   return {};
 }
@@ -238,7 +238,7 @@ Result<void> validate(const VoxelGrid& grid) {
 }
 
 Result<void> validate(const BitVolume& volume) {
-  if (const Result<void> ok = validate(volume.grid); !ok) return ok;
+  LODESTONE_TRY(validate(volume.grid));
   const auto& size = volume.grid.size;
   const std::size_t row = (std::size_t{size[0]} + 63) / 64;
   if (volume.row_words == row && volume.words.size() == row * size[1] * size[2]) return {};
@@ -247,7 +247,7 @@ Result<void> validate(const BitVolume& volume) {
 }
 
 Result<void> validate(const VoxelGrid& grid, std::uint64_t values) {
-  if (const Result<void> ok = validate(grid); !ok) return ok;
+  LODESTONE_TRY(validate(grid));
   if (values >= grid.count()) return {};
   return bad("volume", "{} values for {} x {} x {} voxels", values, grid.size[0], grid.size[1], grid.size[2]);
 }
@@ -255,7 +255,7 @@ Result<void> validate(const VoxelGrid& grid, std::uint64_t values) {
 Result<void> validate(const ScannedVolume& volume) {
   const VolumeHeader& header = volume.header;
   const std::size_t values = std::visit([](const auto& v) { return v.size(); }, volume.values);
-  if (const Result<void> ok = validate(header.grid, values); !ok) return ok;
+  LODESTONE_TRY(validate(header.grid, values));
   const auto finite = [](double x) { return std::isfinite(x); };
   const auto& m = header.to_world.m;
   if (!std::all_of(m.begin(), m.end(), finite)) return bad("volume", "its transform is not finite");

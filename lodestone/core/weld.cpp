@@ -181,7 +181,7 @@ bool all_used_and_distinct(const Mesh& mesh, const std::vector<std::uint32_t>& v
 }  // namespace
 
 Result<Mesh> weld_exact(Mesh mesh, Task task) {
-  if (const Result<void> ok = validate_indices(mesh, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate_indices(mesh, task));
   const std::vector<std::uint32_t> vertex_to = representatives(
       mesh.positions.size(), task, [&](std::size_t v) { return hash_position(mesh.positions[v]); },
       [&](std::size_t a, std::size_t b) { return mesh.positions[a] == mesh.positions[b]; });

@@ -273,7 +273,7 @@ Result<Model> read_scene(const std::filesystem::path& path, const Task& task) {
 
 Result<Model> read_assimp(const std::filesystem::path& path, Task task) {
   Result<InputFile> file = InputFile::open(path);  // its errors are clearer than assimp's
-  if (!file) return fail(file.error());
+  LODESTONE_TRY(file);
   if (file->size() == 0) return fail(ErrorCode::empty, "is empty (0 bytes)", path.string());
   try {
     Result<Model> model = read_scene(path, task.part(kReadingShare));

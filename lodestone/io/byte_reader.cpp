@@ -11,12 +11,12 @@ constexpr std::size_t kWindowBytes = std::size_t{1} << 20;
 
 Result<ByteReader> ByteReader::open(const std::filesystem::path& path) {
   Result<InputFile> file = InputFile::open(path);
-  if (!file) return fail(file.error());
+  LODESTONE_TRY(file);
   ByteReader reader;
   reader.name_ = path.string();
   if (file->size() == 0) {
     Result<std::string> bytes = read_file(path);
-    if (!bytes) return fail(bytes.error());
+    LODESTONE_TRY(bytes);
     if (bytes->empty()) {
       return fail(ErrorCode::empty, "is empty (0 bytes)", path.string(), "was the copy or the export interrupted?");
     }

@@ -154,7 +154,7 @@ Result<DracoMesh> to_plain(const draco::Mesh& in, const std::string& where) {
   }
   for (int i = 0; i < in.num_attributes(); ++i) {
     Result<DracoAttribute> attribute = read_attribute(*in.attribute(i), out.points, where);
-    if (!attribute) return fail(attribute.error());
+    LODESTONE_TRY(attribute);
     out.attributes.push_back(std::move(*attribute));
   }
   return out;
@@ -366,21 +366,21 @@ Result<Mesh> to_mesh(const DracoMesh& in, const std::string& where) {
 
 Result<Model> read_drc(const std::filesystem::path& path, Task task) {
   const Result<std::string> bytes = read_file(path);
-  if (!bytes) return fail(bytes.error());
+  LODESTONE_TRY(bytes);
   return read_drc_bytes(*bytes, path.string(), task);
 }
 
 Result<Model> read_drc_bytes(std::string_view bytes, const std::string& name, Task task) {
   if (bytes.empty()) return fail(ErrorCode::bad_format, "the file is empty", name);
   const Result<DracoMesh> decoded = decode_draco(bytes, name);
-  if (!decoded) return fail(decoded.error());
+  LODESTONE_TRY(decoded);
   if (task.cancelled()) return cancelled_error("reading");
   Result<Mesh> mesh = to_mesh(*decoded, name);
-  if (!mesh) return fail(mesh.error());
+  LODESTONE_TRY(mesh);
   if (mesh->triangles.empty()) return fail(ErrorCode::empty, "no triangle in the file", name);
   const std::size_t points = decoded->points, triangles = mesh->triangles.size();
   Result<Mesh> welded = weld_exact(std::move(*mesh), task);
-  if (!welded) return fail(welded.error());
+  LODESTONE_TRY(welded);
   Model model = make_model(std::move(*welded));
   model.file_vertices = points;
   model.file_triangles = triangles;

@@ -121,9 +121,9 @@ Result<Model> read_named(const std::filesystem::path& path, const ReadOptions& o
   std::size_t head_size = 0;
   {
     Result<InputFile> file = InputFile::open(path);
-    if (!file) return fail(file.error());
+    LODESTONE_TRY(file);
     const Result<std::size_t> got = file->read(std::as_writable_bytes(std::span(head)));
-    if (!got) return fail(got.error());
+    LODESTONE_TRY(got);
     head_size = *got;
   }
   if (!is_model_extension(extension)) {

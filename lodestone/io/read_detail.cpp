@@ -144,10 +144,10 @@ Result<Model> finish_model(Model model, std::string_view name, std::uint64_t fir
                             counted(model.file_triangles, "triangle", "triangles")),
                 std::string(name), model.file_vertices > 0 ? "is it a point cloud?" : "was the export interrupted?");
   }
-  if (const Result<void> finite = check_positions(mesh, name, first_vertex); !finite) return fail(finite.error());
+  LODESTONE_TRY(check_positions(mesh, name, first_vertex));
   clean_attributes(model);
   Result<Mesh> welded = weld_exact(std::move(mesh), task);
-  if (!welded) return fail(welded.error());
+  LODESTONE_TRY(welded);
   mesh = std::move(*welded);
   if (Result<void> valid = validate(model); !valid) {
     valid.error().code = ErrorCode::bad_format;

@@ -161,7 +161,7 @@ Error with_final_names(Error error, const fs::path& hidden, const fs::path& fold
 Result<WriteReport> write_staged(const fs::path& path,
                                  const std::function<Result<WriteReport>(const fs::path&)>& write) {
   Result<StagingFolder> staging = StagingFolder::create(path);
-  if (!staging) return fail(staging.error());
+  LODESTONE_TRY(staging);
   const fs::path folder = path.parent_path();
   Result<WriteReport> report = write(staging->path());
   if (!report) return fail(with_final_names(report.error(), staging->path(), folder));
@@ -170,8 +170,8 @@ Result<WriteReport> write_staged(const fs::path& path,
     file = folder / file.filename();
     expected.insert({file.filename(), companion_of(file).filename()});
   }
-  if (const Result<void> ok = settle_textures(staging->path(), folder, expected); !ok) return fail(ok.error());
-  if (const Result<void> ok = staging->commit(); !ok) return fail(ok.error());
+  LODESTONE_TRY(settle_textures(staging->path(), folder, expected));
+  LODESTONE_TRY(staging->commit());
   return report;
 }
 
@@ -209,7 +209,7 @@ Result<void> check_model_name(const fs::path& path, Compression compression) {
 }
 
 Result<void> check_ladder_name(const fs::path& path, Compression compression) {
-  if (const Result<void> ok = check_model_name(path, compression); !ok) return ok;
+  LODESTONE_TRY(check_model_name(path, compression));
   const std::string e = extension_of(path);
   if (is_gltf(e) || is_pattern(path)) return {};
   return fail(ErrorCode::bad_argument, fmt::format("a {} file holds one level", e), path.string(),
@@ -220,26 +220,26 @@ Result<void> check_replaced(const Model& input, const fs::path& path, std::size_
   if (!input.files.empty() && same_file(input.files.front(), path)) return {};  // written over itself on purpose
   for (std::size_t level = 0; level < (is_pattern(path) ? levels : 1); ++level) {
     const fs::path file = level_file(path, level), companion = companion_of(file);
-    if (const Result<void> ok = check_target(input, file, file); !ok) return ok;
+    LODESTONE_TRY(check_target(input, file, file));
     if (companion.empty() || !has_side_files(input, extension_of(file))) continue;
-    if (const Result<void> ok = check_target(input, companion, file); !ok) return ok;
+    LODESTONE_TRY(check_target(input, companion, file));
   }
   return {};
 }
 
 Result<WriteReport> write_model(const Model& model, const fs::path& path, const WriteOptions& options, Task task) {
-  if (const Result<void> ok = check_model_name(path, options.compression); !ok) return fail(ok.error());
-  if (const Result<void> ok = check_replaced(model, path, 1); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_model_name(path, options.compression));
+  LODESTONE_TRY(check_replaced(model, path, 1));
   if (!has_side_files(model, extension_of(path))) return write_plain(model, path, options, task);
   return write_staged(
       path, [&](const fs::path& hidden) { return write_plain(model, hidden / path.filename(), options, task); });
 }
 
 Result<WriteReport> write_ladder(const Ladder& ladder, const fs::path& path, const WriteOptions& options, Task task) {
-  if (const Result<void> ok = check_ladder_name(path, options.compression); !ok) return fail(ok.error());
-  if (const Result<void> ok = check_replaced(ladder.original, path, ladder.levels.size()); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_ladder_name(path, options.compression));
+  LODESTONE_TRY(check_replaced(ladder.original, path, ladder.levels.size()));
   if (is_pattern(path)) {
-    if (const Result<void> ok = validate(ladder, task); !ok) return fail(ok.error());
+    LODESTONE_TRY(validate(ladder, task));
     return write_level_files(ladder, path, options, task);
   }
   if (!has_side_files(ladder.original, extension_of(path))) return write_gltf(ladder, path, options, task);

@@ -9,7 +9,7 @@
 namespace lodestone::io {
 
 Result<void> check_drawn(const Model& model, const std::filesystem::path& path, const Task& task) {
-  if (const Result<void> ok = validate(model, task); !ok) return ok;
+  LODESTONE_TRY(validate(model, task));
   if (drawn_triangles(model) > 0) return {};
   return fail(ErrorCode::empty, "there is nothing to write: the model draws no triangle", path.string());
 }

@@ -38,7 +38,7 @@ struct SampledModel {
 
 Result<std::unique_ptr<SampledModel>> make_sampled(const Model& model, const Task& task) {
   Result<spatial::Surface> surface = spatial::flatten(model, task);
-  if (!surface) return fail(surface.error());
+  LODESTONE_TRY(surface);
   return std::make_unique<SampledModel>(model, std::move(*surface), task);
 }
 
@@ -208,13 +208,13 @@ Attributes compare(const DrawnAttributes& a, const DrawnAttributes& b, const Pai
 
 Result<Attributes> attribute_deviation(const Model& a, const Model& b, const AttributeOptions& options, Task task) {
   const Result<std::unique_ptr<SampledModel>> original = make_sampled(a, task);
-  if (!original) return fail(original.error());
+  LODESTONE_TRY(original);
   const Result<std::unique_ptr<SampledModel>> level = make_sampled(b, task);
-  if (!level) return fail(level.error());
+  LODESTONE_TRY(level);
   const SampledModel &first = **original, &second = **level;
   std::vector<std::string> notes;
   const Result<std::vector<std::uint32_t>> sets = sets_to_compare(first, second, options, notes);
-  if (!sets) return fail(sets.error());
+  LODESTONE_TRY(sets);
   note_difference(first.attributes.has_normals(), second.attributes.has_normals(), "normals (its faces' are taken)",
                   notes);
   note_difference(first.attributes.has_color(), second.attributes.has_color(), "vertex colours", notes);

@@ -21,7 +21,7 @@ Reference::~Reference() = default;
 
 Result<Reference> Reference::create(const Model& original, Task task) {
   Result<spatial::Surface> surface = spatial::flatten(original, task);
-  if (!surface) return fail(surface.error());
+  LODESTONE_TRY(surface);
   auto data = std::make_unique<Data>(std::move(*surface), task);
   if (task.cancelled()) return cancelled_error("measuring");
   return Reference(std::move(data));
@@ -31,7 +31,7 @@ double Reference::diagonal() const { return data_->surface.bounds.diagonal(); }
 
 Result<Distance> Reference::distance_to(const Model& level, const DistanceOptions& options, Task task) const {
   const Result<spatial::Surface> surface = spatial::flatten(level, options.input, task);
-  if (!surface) return fail(surface.error());
+  LODESTONE_TRY(surface);
   const spatial::Bvh tree(*surface, task);
   Distance out;
   out.forward = detail::directed_distance(data_->surface, tree, options, task.part(0.5));
@@ -63,7 +63,7 @@ Result<Distance> Reference::steady_distance_to(const Model& level, const Distanc
 
 Result<Distance> distance(const Model& a, const Model& b, const DistanceOptions& options, Task task) {
   const Result<Reference> reference = Reference::create(a, task.part(0.1));
-  if (!reference) return fail(reference.error());
+  LODESTONE_TRY(reference);
   return reference->distance_to(b, options, task);
 }
 

@@ -25,7 +25,7 @@ HausdorffInterval directed(const spatial::Surface& from, const spatial::Bvh& to,
 
 Result<Hausdorff> hausdorff(const Model& a, const Model& b, double tolerance, Task task) {
   const Result<spatial::Surface> first = spatial::flatten(a, task), second = first ? spatial::flatten(b, task) : first;
-  if (!second) return fail(second.error());
+  LODESTONE_TRY(second);
   const double diagonal = std::max(first->bounds.diagonal(), second->bounds.diagonal());
   if (!(tolerance > kLeastTolerance * diagonal)) {
     return fail(ErrorCode::bad_argument, "the tolerance is too small", {}, "use more than 1e-9 of the diagonal");

@@ -196,9 +196,9 @@ Mesh mesh_of(Field field, Vec3d offset, double range, bool linear_colors) {
 
 Result<Heat> heat_map(const Model& a, const Model& b, const HeatOptions& options, Task task) {
   Result<spatial::Surface> from = spatial::flatten(a, options.input, task.part(0.2));
-  if (!from) return fail(from.error());
+  LODESTONE_TRY(from);
   const Result<spatial::Surface> other = spatial::flatten(b, options.input, task.part(0.1));
-  if (!other) return fail(other.error());
+  LODESTONE_TRY(other);
   const spatial::Bvh to(*other, task.part(0.1));
 
   Heat heat;

@@ -80,18 +80,18 @@ Result<Picture> picture_of(const render::Scene& scene, const Camera& camera, std
                            const Task& task) {
   Picture picture;
   Result<render::Frame> frame = render::rasterize(scene, camera, size, size, kSamples, task);
-  if (!frame) return fail(frame.error());
+  LODESTONE_TRY(frame);
   picture.coverage = std::move(frame->coverage);
   render::RenderOptions options;
   options.width = options.height = size;
   options.samples = kSamples;
   Result<Pixels> shading = render::render(scene, camera, options, task);
-  if (!shading) return fail(shading.error());
+  LODESTONE_TRY(shading);
   picture.shading = std::move(*shading);
   if (!color) return picture;
   options.shading = render::Shading::textured;
   Result<Pixels> colors = render::render(scene, camera, options, task);
-  if (!colors) return fail(colors.error());
+  LODESTONE_TRY(colors);
   picture.color = std::move(*colors);
   return picture;
 }
@@ -183,7 +183,7 @@ Result<ImageReference> ImageReference::create(const Model& original, const Image
     return fail(ErrorCode::bad_argument, "that is no size for pictures to compare", {}, "use 16 to 4096 pixels");
   }
   const Result<render::Scene> scene = render::Scene::create(original, scene_options(options), task.part(0.1));
-  if (!scene) return fail(scene.error());
+  LODESTONE_TRY(scene);
   auto data = std::make_unique<Data>();
   data->options = options;
   data->has_color = scene->has_textures() || scene->has_colors();
@@ -191,7 +191,7 @@ Result<ImageReference> ImageReference::create(const Model& original, const Image
     data->cameras.push_back(camera_at(scene->bounds(), direction));
     Result<Picture> picture = picture_of(*scene, data->cameras.back(), options.size_px, data->has_color,
                                          task.part(0.9 / static_cast<double>(directions.size())));
-    if (!picture) return fail(picture.error());
+    LODESTONE_TRY(picture);
     data->pictures.push_back(std::move(*picture));
   }
   return ImageReference(std::move(data));
@@ -210,7 +210,7 @@ Result<ImageDeviation> ImageReference::deviation_of(const Model& level, Task tas
     const Task part = task.part(0.9 / static_cast<double>(data_->cameras.size()));
     Result<Picture> picture = scene ? picture_of(*scene, data_->cameras[i], size, data_->has_color, part)
                                     : Result<Picture>(empty_picture(size, data_->has_color));
-    if (!picture) return fail(picture.error());
+    LODESTONE_TRY(picture);
     const Picture& original = data_->pictures[i];
     compare_silhouettes(original, *picture, size, out);
     std::vector<std::uint8_t> either(original.coverage.size());

@@ -63,7 +63,7 @@ std::optional<std::int64_t> genus_of(const Topology& t) {
 }  // namespace
 
 Result<Shape> shape_of(const Model& model, const Task& task) {
-  if (const Result<void> ok = validate(model, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(model, task));
   const std::vector<std::uint32_t> counts = instance_counts(model);
   Shape shape;
   shape.topology.closed = shape.topology.manifold = true;

@@ -93,7 +93,7 @@ Result<Normals> oriented(const PointCloud& cloud, const KdTree& tree, const deta
 }  // namespace
 
 Result<Normals> estimate_normals(const PointCloud& cloud, const NormalOptions& options, const Task& task) {
-  if (const Result<void> ok = check(cloud, options, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(cloud, options, task));
   const KdTree tree(cloud.positions, task.part(0.2));
   GraphRows rows(tree, options.graph_neighbors);
   Normals out;
@@ -109,7 +109,7 @@ Result<Normals> estimate_normals(const PointCloud& cloud, const NormalOptions& o
 }
 
 Result<Normals> orient_normals(const PointCloud& cloud, const NormalOptions& options, const Task& task) {
-  if (const Result<void> ok = check(cloud, options, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(cloud, options, task));
   if (cloud.normals.size() != cloud.size()) {
     return fail(ErrorCode::bad_argument, fmt::format("{} points have {} normals", cloud.size(), cloud.normals.size()),
                 "normals", "estimate them");

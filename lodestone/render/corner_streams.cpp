@@ -241,7 +241,7 @@ Result<std::vector<std::vector<float>>> values_of_meshes(const Model& model, con
 Result<void> gather_values(const Model& model, const DrawnTriangles& spots, const SceneOptions& options,
                            SceneData& data, const Task& task) {
   const Result<std::vector<std::vector<float>>> values = values_of_meshes(model, options);
-  if (!values) return fail(values.error());
+  LODESTONE_TRY(values);
   if (values->empty()) return {};
   data.values.assign(data.surface.triangles.size(), {kNoValue, kNoValue, kNoValue});
   for_each_triangle(spots, data.values.size(), task, [&](std::size_t t, const DrawnTriangle& spot) {

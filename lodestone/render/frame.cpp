@@ -9,9 +9,7 @@ namespace lodestone::render {
 
 Result<Frame> rasterize(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
                         int samples, Task task) {
-  if (const Result<void> checked = detail::check_view(camera, width, height, samples); !checked) {
-    return fail(checked.error());
-  }
+  LODESTONE_TRY(detail::check_view(camera, width, height, samples));
   const detail::Raster raster(scene.data(), camera, width, height, samples, task);
   Frame frame;
   frame.width = width;

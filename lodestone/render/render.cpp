@@ -71,10 +71,7 @@ class Resolver {
 }  // namespace
 
 Result<Pixels> render(const Scene& scene, const Camera& camera, const RenderOptions& options, Task task) {
-  if (const Result<void> checked = detail::check_view(camera, options.width, options.height, options.samples);
-      !checked) {
-    return fail(checked.error());
-  }
+  LODESTONE_TRY(detail::check_view(camera, options.width, options.height, options.samples));
   if (options.shading == Shading::heat && !scene.has_values()) {
     return fail(ErrorCode::bad_argument, "a heat map needs values, and the scene has none", {},
                 "give them or name an attribute that holds them");
@@ -105,7 +102,7 @@ Result<Pixels> render(const Scene& scene, const Camera& camera, const RenderOpti
 
 Result<Pixels> render(const Model& model, const Camera& camera, const RenderOptions& options, Task task) {
   const Result<Scene> scene = Scene::create(model, {}, task.part(0.5));
-  if (!scene) return fail(scene.error());
+  LODESTONE_TRY(scene);
   return render(*scene, camera, options, task.part(0.5));
 }
 

@@ -57,16 +57,14 @@ void make_appearances(const Model& model, SceneData& data) {
 
 Result<Scene> Scene::create(const Model& model, const SceneOptions& options, Task task) {
   Result<spatial::Surface> surface = spatial::flatten(model, options.input, task.part(0.4));
-  if (!surface) return fail(surface.error());
+  LODESTONE_TRY(surface);
   auto data = std::make_shared<SceneData>();
   data->surface = std::move(*surface);
   find_bounds(*data);
   if (data->bounds.empty()) return fail(ErrorCode::empty, "no position of the model is finite");
   number_instances(model, *data);
   make_appearances(model, *data);
-  if (const Result<void> done = detail::gather_corners(model, options, *data, task.part(0.6)); !done) {
-    return fail(done.error());
-  }
+  LODESTONE_TRY(detail::gather_corners(model, options, *data, task.part(0.6)));
   if (task.cancelled()) return cancelled_error("preparing the scene");
   Scene scene;
   scene.data_ = std::move(data);

@@ -122,7 +122,7 @@ void write_line(Pixels& sheet, std::string text, std::uint32_t left, std::uint32
 }  // namespace
 
 Result<Pixels> contact_sheet(const std::vector<SheetLevel>& levels, const SheetOptions& options, Task task) {
-  if (const Result<void> ok = check(levels, options); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(levels, options));
   const render::Scene& original = levels.front().scene;
   const double aspect = static_cast<double>(options.picture.width) / options.picture.height;
   const Camera framed = original.framed(options.angles, aspect, options.lens, options.up);
@@ -135,7 +135,7 @@ Result<Pixels> contact_sheet(const std::vector<SheetLevel>& levels, const SheetO
     const Task part = task.part(1.0 / static_cast<double>(levels.size()));
     const std::uint32_t left = left_of(i, options);
     const Result<Pixels> upper = render::render(levels[i].scene, framed, options.picture, part.part(0.5));
-    if (!upper) return fail(upper.error());
+    LODESTONE_TRY(upper);
     paste(*upper, sheet, left, upper_row(options).top);
     const std::uint32_t caption = upper_row(options).caption;
     write_line(sheet, fmt::format("{}: {} triangles", i, with_separators(levels[i].scene.triangle_count())), left,
@@ -151,7 +151,7 @@ Result<Pixels> contact_sheet(const std::vector<SheetLevel>& levels, const SheetO
     if (!(distance > 1e-9 * diagonal)) continue;  // as exact as the original: it never has to be far away
     const LowerView view = at_distance(framed, original, error, distance, options);
     const Result<Pixels> lower = render::render(levels[i].scene, view.camera, options.picture, part.part(0.5));
-    if (!lower) return fail(lower.error());
+    LODESTONE_TRY(lower);
     paste(*lower, sheet, left, lower_row(options).top);
     const std::uint32_t below = lower_row(options).caption;
     write_line(sheet, fmt::format("{} {} away", i == 0 ? "until" : "from", length_text(distance, options.unit)), left,

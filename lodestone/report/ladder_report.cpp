@@ -29,7 +29,7 @@ std::uint64_t seam_vertices(const Model& model) {
 
 Result<ReportData> ladder_report(const chain::LadderResult& result, const PictureOptions& pictures, Task task) {
   const Ladder& ladder = result.ladder;
-  if (const Result<void> ok = validate(ladder, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(ladder, task));
   ReportData data;
   data.diagonal = ladder.levels.front().error.diagonal;
   data.seam_vertices = seam_vertices(ladder.original);
@@ -40,7 +40,7 @@ Result<ReportData> ladder_report(const chain::LadderResult& result, const Pictur
   const Task counting = task.part(0.2);
   for (std::size_t i = 0; i < ladder.levels.size(); ++i) {
     const Result<measure::Shape> shape = measure::shape_of(ladder.model(i), counting);
-    if (!shape) return fail(shape.error());
+    LODESTONE_TRY(shape);
     ReportLevel level;
     level.triangles = ladder.levels[i].triangles;
     level.error = ladder.levels[i].error;
@@ -49,7 +49,7 @@ Result<ReportData> ladder_report(const chain::LadderResult& result, const Pictur
     data.levels.push_back(std::move(level));
   }
   Result<std::vector<LevelPictures>> drawn = draw_levels(ladder, pictures, task.part(0.8));
-  if (!drawn) return fail(drawn.error());
+  LODESTONE_TRY(drawn);
   data.pictures = std::move(*drawn);
   return data;
 }

@@ -283,7 +283,7 @@ Result<std::size_t> join_parts(Mesh& mesh, double tolerance, const std::vector<s
     return fail(ErrorCode::bad_argument, "the list of locked vertices has another length than the mesh's vertices",
                 "joining", "give one entry a vertex");
   }
-  if (const Result<void> ok = validate(mesh, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(mesh, task));
   Sewn sewn(mesh);
   for (int round = 0; round < kMostRounds && !task.cancelled(); ++round) {
     if (Round(mesh, sewn, locked, task).run(tolerance) == 0) break;

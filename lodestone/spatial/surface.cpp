@@ -83,7 +83,7 @@ Result<Surface> flatten(const Model& model, Task task) { return flatten(model, I
 
 Result<Surface> flatten(const Model& model, Input input, Task task) {
   if (input != Input::valid) {
-    if (const Result<void> ok = validate(model, task); !ok) return fail(ok.error());
+    LODESTONE_TRY(validate(model, task));
   }
   Surface surface;
   const std::size_t triangles = drawn_triangles(model);

@@ -5,8 +5,8 @@
 namespace lodestone::voxel {
 
 Result<void> combine(BitVolume& a, const BitVolume& b, BooleanOperation operation) {
-  if (const Result<void> ok = validate(a); !ok) return ok;
-  if (const Result<void> ok = validate(b); !ok) return ok;
+  LODESTONE_TRY(validate(a));
+  LODESTONE_TRY(validate(b));
   if (a.grid.size != b.grid.size || a.grid.origin != b.grid.origin || a.grid.spacing != b.grid.spacing) {
     return fail(ErrorCode::bad_argument, "the solids' voxels do not lie alike", {}, "voxelize both in one grid");
   }

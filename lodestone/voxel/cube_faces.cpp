@@ -69,7 +69,7 @@ void add_voxel(const BitVolume& volume, std::uint32_t x, std::uint32_t y, std::u
 }  // namespace
 
 Result<Mesh> cube_faces(const BitVolume& volume, Task task) {
-  if (const Result<void> ok = validate(volume); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(volume));
   const auto& size = volume.grid.size;
   Mesh mesh;
   mesh.offset = volume.grid.point({size[0] / 2.0, size[1] / 2.0, size[2] / 2.0});

@@ -58,7 +58,7 @@ double edge_ratio(const BitVolume& solid, Vec3d from, Vec3d to, std::uint32_t st
 
 Result<Mesh> edge_ratio_surface(const BitVolume& solid, const std::array<std::uint32_t, 3>& samples,
                                 const EdgeRatioOptions& options, Task task) {
-  if (const Result<void> ok = validate(solid); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(solid));
   Lattice lattice;
   VoxelGrid grid = solid.grid;
   std::array<std::uint32_t, 3> steps{};
@@ -83,7 +83,7 @@ Result<Mesh> edge_ratio_surface(const BitVolume& solid, const std::array<std::ui
   }
   const InsideRows rows = sampled_rows(solid, samples, lattice, options.threshold, task);
   const Result<detail::CubeSurface> surface = detail::find_surface(rows, task);
-  if (!surface) return fail(surface.error());
+  LODESTONE_TRY(surface);
   if (surface->vertices == 0) return fail(ErrorCode::empty, "no sample lies inside");
   Mesh mesh;
   detail::place_vertices(grid, rows, *surface, mesh, task, [&](std::size_t axis, std::uint32_t y, std::uint32_t z) {

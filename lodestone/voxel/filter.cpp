@@ -77,7 +77,7 @@ void blur_rows(const ScalarVolume<float>& from, std::size_t axis, const std::vec
 
 template <class T>
 Result<ScalarVolume<float>> floats_of(const VolumeView<T>& volume, const Task& task) {
-  if (const Result<void> ok = validate(volume); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(volume));
   ScalarVolume<float> out;
   out.grid = volume.grid;
   out.values.resize(volume.values.size());
@@ -90,7 +90,7 @@ Result<ScalarVolume<float>> floats_of(const VolumeView<T>& volume, const Task& t
 
 template <class T>
 Result<ScalarVolume<float>> median_of(const VolumeView<T>& volume, std::uint32_t radius, const Task& task) {
-  if (const Result<void> ok = validate(volume); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(volume));
   if (radius < 1 || radius > 7) {
     return fail(ErrorCode::bad_argument, fmt::format("a median can't look {} voxels far", radius), {}, "use 1 to 7");
   }
@@ -162,7 +162,7 @@ Result<ScalarVolume<float>> as_float(const VolumeView<std::uint16_t>& volume, Ta
 Result<ScalarVolume<float>> as_float(const VolumeView<float>& volume, Task task) { return floats_of(volume, task); }
 
 Result<ScalarVolume<float>> gaussian(ScalarVolume<float> volume, Vec3d sigma, Task task) {
-  if (const Result<void> ok = validate(volume.view()); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(volume.view()));
   for (std::size_t k = 0; k < 3; ++k) {
     if (sigma[k] >= 0 && sigma[k] <= 1000) continue;
     return fail(ErrorCode::bad_argument, fmt::format("a blur of {} voxels can't be", sigma[k]), {}, "use 0 to 1000");

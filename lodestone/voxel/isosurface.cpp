@@ -159,10 +159,10 @@ Result<detail::Contour> contour_of(const VolumeView<T>& volume, double iso, cons
     return fail(ErrorCode::bad_argument, fmt::format("{} values are no volume of {} x {} x {} voxels",
                                                      volume.values.size(), size[0], size[1], size[2]));
   }
-  if (const Result<void> ok = validate(volume); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(volume));
   InsideRows rows = inside_rows(volume, iso, task);
   Result<detail::CubeSurface> surface = detail::find_surface(rows, task);
-  if (!surface) return fail(surface.error());
+  LODESTONE_TRY(surface);
   if (surface->vertices == 0) {
     return fail(ErrorCode::empty, fmt::format("no voxel is above {}", iso), {}, "choose another iso value");
   }
@@ -194,7 +194,7 @@ detail::CornerValues corner_values(const VolumeView<T>& volume, double iso, std:
 template <class T>
 Result<Mesh> surface_of(const VolumeView<T>& volume, const IsosurfaceOptions& options, const Task& task) {
   Result<detail::Contour> made = contour_of(volume, options.iso, task);
-  if (!made) return fail(made.error());
+  LODESTONE_TRY(made);
   if (options.trilinear) {
     made->mesh.triangles.clear();
     const auto values_at = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {

@@ -84,7 +84,7 @@ Result<std::map<std::int64_t, LabelBox>> label_boxes(const VolumeView<T>& volume
       }
     }
   }
-  if (const Result<void> ok = check_labels(boxes, steps); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_labels(boxes, steps));
   return boxes;
 }
 

@@ -130,7 +130,7 @@ double voxel_value(const BitVolume& volume, Vec3d at) {
 
 Result<ScalarVolume<std::uint8_t>> downsample(const BitVolume& volume, const std::array<std::uint32_t, 3>& size,
                                               Task task) {
-  if (const Result<void> ok = validate(volume); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(volume));
   const auto& old = volume.grid.size;
   for (std::size_t k = 0; k < 3; ++k) {
     if (size[k] >= 1 && size[k] <= old[k]) continue;

@@ -159,13 +159,13 @@ std::uint64_t scan_distance_bytes(const VoxelGrid& grid, std::uint64_t points) {
 }
 
 Result<ScanDistance> scan_distance(const PointCloud& cloud, const ScanOptions& options, const Task& task) {
-  if (const Result<void> ok = detail::check_scan(cloud, options, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(detail::check_scan(cloud, options, task));
   if (cloud.normals.size() != cloud.size()) {
     return fail(ErrorCode::bad_argument, "the points have no normals", "scan", "estimate them");
   }
   const KdTree tree(cloud.positions, task.part(0.1));
   Result<detail::ScanPlan> plan = detail::plan_scan(cloud, tree, options, 0, scan_distance_bytes, task.part(0.1));
-  if (!plan) return fail(plan.error());
+  LODESTONE_TRY(plan);
   const double radius = plan->radius;
   const auto reach = std::min(kMostReach, static_cast<std::uint32_t>(std::ceil(radius + band_of(radius))));
   ScanDistance out;

@@ -75,7 +75,7 @@ Result<void> check_scan(const PointCloud& cloud, const ScanOptions& options, con
     return fail(ErrorCode::bad_argument, fmt::format("{} neighbours can't be used", options.neighbors), "scan",
                 "use 1 to 64");
   }
-  if (const Result<void> ok = validate(cloud, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(cloud, task));
   const Box3d bounds = bounds_of(cloud);
   const Vec3d size = bounds.size();
   const double longest = std::max({size.x, size.y, size.z});

@@ -19,10 +19,10 @@ std::uint64_t scan_solid_bytes(const VoxelGrid& grid, std::uint64_t points) {
 }
 
 Result<ScanSolid> scan_solid(const PointCloud& cloud, const ScanOptions& options, const Task& task) {
-  if (const Result<void> ok = detail::check_scan(cloud, options, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(detail::check_scan(cloud, options, task));
   Result<detail::ScanPlan> plan = detail::plan_scan(cloud, spatial::KdTree(cloud.positions, task.part(0.1)), options,
                                                     whole(options.splat_radius), scan_solid_bytes, task.part(0.2));
-  if (!plan) return fail(plan.error());
+  LODESTONE_TRY(plan);
   ScanSolid out;
   out.figures = std::move(plan->figures);
   BitVolume outside;

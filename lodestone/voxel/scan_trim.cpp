@@ -29,8 +29,8 @@ std::vector<std::uint8_t> near_points(const Mesh& mesh, const PointCloud& cloud,
 
 Result<Mesh> trim_to_points(const Mesh& mesh, const PointCloud& cloud, double most, const Task& task) {
   if (cloud.positions.empty()) return fail(ErrorCode::empty, "there are no points", "scan");
-  if (const Result<void> ok = validate(cloud, task); !ok) return fail(ok.error());
-  if (const Result<void> ok = validate(mesh, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(cloud, task));
+  LODESTONE_TRY(validate(mesh, task));
   const std::vector<std::uint8_t> near = near_points(mesh, cloud, most, task);
   if (task.cancelled()) return cancelled_error("scan");
   Mesh out;

@@ -410,7 +410,7 @@ class Quads {
 Result<SharpSurface> sharp_surface(const VolumeView<std::uint8_t>& volume, const spatial::Bvh& source,
                                    const SharpOptions& options, Task task) {
   const Result<detail::Contour> contour = detail::contour(volume, options.iso, task.part(0.2));
-  if (!contour) return fail(contour.error());
+  LODESTONE_TRY(contour);
   Dual dual{*contour, volume.grid, source, {}, {}, {}, {}};
   list_rings(dual, task);
   const std::vector<detail::CreasePoint> creases =

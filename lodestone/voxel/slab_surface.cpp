@@ -52,7 +52,7 @@ Result<void> take_slab(const BitVolume& solid, std::uint32_t ratio_z, std::uint3
   std::optional<ScalarVolume<std::uint8_t>> shares;
   if (!same) {
     Result<ScalarVolume<std::uint8_t>> made = downsample(solid, {size[0], size[1], slices}, task);
-    if (!made) return fail(made.error());
+    LODESTONE_TRY(made);
     shares = std::move(*made);
   }
   parallel_for(slices, 1, task, [&](std::size_t slice, std::size_t, std::size_t) {
@@ -74,10 +74,10 @@ Result<void> take_slab(const BitVolume& solid, std::uint32_t ratio_z, std::uint3
 
 Result<SlabSurface> slab_surface(const spatial::Surface& surface, const VoxelGrid& grid,
                                  const std::array<std::uint32_t, 3>& size, const VoxelizeOptions& options, Task task) {
-  if (const Result<void> ok = check(grid, size, options); !ok) return fail(ok.error());
-  if (const Result<void> ok = validate(grid); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(grid, size, options));
+  LODESTONE_TRY(validate(grid));
   if (options.input != Input::valid) {
-    if (const Result<void> ok = validate(surface, task); !ok) return fail(ok.error());
+    LODESTONE_TRY(validate(surface, task));
   }
   VoxelizeOptions of_slab = options;
   of_slab.input = Input::valid;
@@ -95,17 +95,16 @@ Result<SlabSurface> slab_surface(const spatial::Surface& surface, const VoxelGri
     slab.origin.z += grid.spacing.z * first;
     watch.lap();
     const Result<Voxelized> made = voxelize(surface, slab, of_slab, task);
-    if (!made) return fail(made.error());
+    LODESTONE_TRY(made);
     out.voxelize_seconds += watch.lap();
     out.voxels_inside += made->volume.set_count();
     if (z + slices >= size[2]) out.leaking_columns = made->leaking_columns;
-    if (const Result<void> taken = take_slab(made->volume, ratio, z, rows, size, task); !taken)
-      return fail(taken.error());
+    LODESTONE_TRY(take_slab(made->volume, ratio, z, rows, size, task));
     out.resample_seconds += watch.lap();
     task.advance(0.7 * slices / size[2]);
   }
   const Result<detail::CubeSurface> found = detail::find_surface(rows, task);
-  if (!found) return fail(found.error());
+  LODESTONE_TRY(found);
   if (found->vertices == 0) return fail(ErrorCode::empty, "no voxel is inside");
   VoxelGrid level = grid;
   level.size = size;

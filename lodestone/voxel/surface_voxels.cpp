@@ -102,8 +102,8 @@ Result<BitVolume> surface_voxels(const spatial::Surface& surface, const VoxelGri
     return fail(ErrorCode::bad_argument,
                 fmt::format("a grid of {} x {} x {} voxels can't be", grid.size[0], grid.size[1], grid.size[2]));
   }
-  if (const Result<void> ok = validate(grid); !ok) return fail(ok.error());
-  if (const Result<void> ok = validate(surface, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(grid));
+  LODESTONE_TRY(validate(surface, task));
   BitVolume volume(grid);
   std::vector<std::vector<std::uint32_t>> slabs((grid.size[2] + kSlab - 1) / kSlab);
   Placed placed;

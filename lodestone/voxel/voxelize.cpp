@@ -111,7 +111,7 @@ std::uint64_t leaking_lines(const BitVolume& volume, const BitVolume& beyond) {
 }  // namespace
 
 Result<VoxelGrid> grid_around(const Box3d& bounds, std::uint32_t resolution, std::uint32_t margin) {
-  if (const Result<void> ok = check(bounds); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(bounds));
   if (resolution > kMostSide || std::uint64_t{resolution} <= 2 * std::uint64_t{margin}) {
     return fail(ErrorCode::bad_argument, fmt::format("a resolution of {} can't be", resolution), {},
                 fmt::format("use {} to {}", 2 * std::uint64_t{margin} + 1, kMostSide));
@@ -129,10 +129,10 @@ Result<VoxelGrid> grid_around(const Box3d& bounds, std::uint32_t resolution, std
 }
 
 Result<VoxelGrid> grid_over(const Box3d& bounds, const std::array<std::uint32_t, 3>& resolution) {
-  if (const Result<void> ok = check(bounds); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(bounds));
   VoxelGrid grid;
   grid.size = resolution;
-  if (const Result<void> ok = check(grid); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(grid));
   const Vec3d size = bounds.size();
   const double longest = std::max({size.x, size.y, size.z});
   grid.origin = bounds.min;
@@ -142,16 +142,16 @@ Result<VoxelGrid> grid_over(const Box3d& bounds, const std::array<std::uint32_t,
 
 Result<Voxelized> voxelize(const spatial::Surface& surface, const VoxelGrid& grid, const VoxelizeOptions& options,
                            Task task) {
-  if (const Result<void> ok = check(grid); !ok) return fail(ok.error());
-  if (const Result<void> ok = validate(grid); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(grid));
+  LODESTONE_TRY(validate(grid));
   if (options.input != Input::valid) {
-    if (const Result<void> ok = validate(surface, task); !ok) return fail(ok.error());
+    LODESTONE_TRY(validate(surface, task));
   }
   Stopwatch watch;
   Voxelized out;
   if (options.fill == FillRule::shrinkwrap) {
     Result<BitVolume> wrapped = shrinkwrap(surface, grid, options.close_voxels, task);
-    if (!wrapped) return fail(wrapped.error());
+    LODESTONE_TRY(wrapped);
     out.volume = std::move(*wrapped);
     out.seconds.filling = watch.lap();
     return out;

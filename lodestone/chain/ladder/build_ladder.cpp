@@ -123,14 +123,14 @@ struct CountStep {
 Result<bool> add_count_level(LadderResult& result, LevelMaker& maker, const CountStep& step,
                              const LadderOptions& options, const Task& task) {
   Result<MeasuredLevel> cut = maker.with_feedback(step.prefix, task.part(options.force ? 1.0 : 0.7));
-  if (!cut) return fail(cut.error());
+  LODESTONE_TRY(cut);
   if (options.force) {
     add_level(result, std::move(*cut));
     return true;
   }
   const Jump jump = jump_of(*cut, step.wanted);
   Result<InLine> kept = keep_in_line(maker, std::move(*cut), curve_of(result.ladder), step.last, task.part(0.3));
-  if (!kept) return fail(kept.error());
+  LODESTONE_TRY(kept);
   const bool adds = kept->cut && (!kept->jumps || shrinks(result, kept->cut->level.triangles));
   if (adds) add_level(result, std::move(*kept->cut));
   if (!kept->jumps) return true;
@@ -150,7 +150,7 @@ Result<void> add_count_levels(LadderResult& result, LevelMaker& maker, const std
     const bool is_new = prefix > last || starts_coarser(result, options, left);
     if (is_new && (!short_of || shrinks(result, left))) {  // one that hardly differs from the one before is none
       const Result<bool> goes_on = add_count_level(result, maker, {i + 1, targets[i], prefix, last}, options, part);
-      if (!goes_on) return fail(goes_on.error());
+      LODESTONE_TRY(goes_on);
       if (!*goes_on) break;
       last = prefix;
     } else if (!short_of) {
@@ -170,7 +170,7 @@ Result<void> add_error_levels(LadderResult& result, LevelMaker& maker, const Lad
   for (std::size_t i = 0; i < options.errors.size(); ++i) {
     const Task part = task.part(1.0 / static_cast<double>(options.errors.size()), fmt::format("level {}", i + 1));
     Result<MeasuredLevel> cut = find_error_cut(maker, starts, options.errors[i], part);
-    if (!cut) return fail(cut.error());
+    LODESTONE_TRY(cut);
     const bool holds = cut->level.error.measured_error <= options.errors[i];
     const bool is_new = cut->prefix > last || (holds && starts_coarser(result, options, cut->level.triangles));
     if (!is_new) {
@@ -193,7 +193,7 @@ Result<void> add_error_levels(LadderResult& result, LevelMaker& maker, const Lad
 
 // The original itself, too: from here on it counts as valid.
 Result<void> check_drawn(const Model& original, const Task& task) {
-  if (const Result<void> ok = validate(original, task); !ok) return ok;
+  LODESTONE_TRY(validate(original, task));
   if (drawn_triangles(original) > 0) return {};
   return fail(ErrorCode::empty, "the model draws no triangle", {}, "is a scene with meshes in the file?");
 }
@@ -214,7 +214,7 @@ std::vector<std::size_t> detail::count_targets(const LadderOptions& options, std
 }
 
 Result<void> detail::check_ladder(const Model& original, const LadderOptions& options, const Task& task) {
-  if (const Result<void> ok = check(options); !ok) return ok;
+  LODESTONE_TRY(check(options));
   if (options.start) {
     const Result<void> ok = validate(*options.start, task);
     if (!ok) return fail(ok.error().code, ok.error().what, "start, " + ok.error().where);
@@ -236,12 +236,12 @@ Result<void> detail::compare_pictures(LadderResult& result, const measure::Image
   measure::ImageOptions of_valid = options;
   of_valid.input = Input::valid;
   const auto reference = measure::ImageReference::create(result.ladder.original, of_valid, task.part(0.2));
-  if (!reference) return fail(reference.error());
+  LODESTONE_TRY(reference);
   const std::size_t levels = result.ladder.levels.size();
   for (std::size_t i = 0; i < levels; ++i) {
     const Task part = task.part(0.8 / static_cast<double>(levels));
     const auto deviation = reference->deviation_of(result.ladder.model(i), part);
-    if (!deviation) return fail(deviation.error());
+    LODESTONE_TRY(deviation);
     result.images.push_back(*deviation);
   }
   result.measure_seconds += watch.total();
@@ -260,7 +260,7 @@ Shares shares_of(Effort effort) { return effort == Effort::fast ? Shares{0.4, 0.
 }  // namespace
 
 Result<LadderResult> build_ladder(Model original, const LadderOptions& options, Task task) {
-  if (const Result<void> ok = detail::check_ladder(original, options, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(detail::check_ladder(original, options, task));
   const std::vector<std::size_t> targets = detail::count_targets(options, drawn_triangles(original));
   const std::size_t smallest = options.errors.empty() ? targets.back() : 1;
 
@@ -272,23 +272,20 @@ Result<LadderResult> build_ladder(Model original, const LadderOptions& options, 
   const Result<CollapsePlan> plan =
       CollapsePlan::create(options.start ? *options.start : model, smallest, options.constraints,
                            task.part(shares.collapsing, "collapsing"));
-  if (!plan) return fail(plan.error());
+  LODESTONE_TRY(plan);
   result.simplify_seconds = collapsing.total();
   const Stopwatch preparing;
   const Result<Reference> reference = Reference::create(model, task.part(shares.preparing, "preparing to measure"));
-  if (!reference) return fail(reference.error());
+  LODESTONE_TRY(reference);
   result.measure_seconds = preparing.total();
   result.ladder.levels.push_back(detail::original_level(model, reference->diagonal()));
   const double left = 1 - shares.collapsing - shares.preparing;
   const Task measuring = task.part(options.image ? left - 0.15 : left, "measuring");
   LevelMaker maker(*plan, *reference, options.distance, options.effort);
-  const Result<void> added = options.errors.empty() ? add_count_levels(result, maker, targets, options, measuring)
-                                                    : add_error_levels(result, maker, options, measuring);
-  if (!added) return fail(added.error());
+  LODESTONE_TRY(options.errors.empty() ? add_count_levels(result, maker, targets, options, measuring)
+                                       : add_error_levels(result, maker, options, measuring));
   if (options.image) {
-    const Result<void> compared =
-        detail::compare_pictures(result, *options.image, task.part(0.15, "comparing pictures"));
-    if (!compared) return fail(compared.error());
+    LODESTONE_TRY(detail::compare_pictures(result, *options.image, task.part(0.15, "comparing pictures")));
   }
   return result;
 }
@@ -299,33 +296,33 @@ Result<SimplifyModelResult> simplify_model(const Model& original, const Simplify
     return bad(by_count ? "a triangle count and an error are asked for at once" : "no target is asked for",
                "give a triangle count, a ratio or an error");
   }
-  if (const Result<void> ok = check_drawn(original, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_drawn(original, task));
   const Shares shares = shares_of(options.effort);
   const Stopwatch collapsing;
   const Result<CollapsePlan> plan =
       CollapsePlan::create(original, by_count ? options.target_triangles : 1, options.constraints,
                            task.part(shares.collapsing, "collapsing"));
-  if (!plan) return fail(plan.error());
+  LODESTONE_TRY(plan);
   SimplifyModelResult result;
   result.simplify_seconds = collapsing.total();
   const Stopwatch preparing;
   const Result<Reference> reference = Reference::create(original, task.part(shares.preparing, "preparing to measure"));
-  if (!reference) return fail(reference.error());
+  LODESTONE_TRY(reference);
   result.measure_seconds = preparing.total();
   const Task rest = task.part(1 - shares.collapsing - shares.preparing, "measuring");
   LevelMaker maker(*plan, *reference, options.distance, options.effort);
   Starts starts;
   Result<MeasuredLevel> cut = by_count ? maker.with_feedback(plan->prefix_for(options.target_triangles), rest)
                                        : find_error_cut(maker, starts, options.max_error, rest);
-  if (!cut) return fail(cut.error());
+  LODESTONE_TRY(cut);
   std::string jumped;
   if (by_count && !options.force && cut->level.triangles > options.target_triangles) {
     const Jump jump = jump_of(*cut, options.target_triangles);
     Result<InLine> kept = keep_in_line(maker, std::move(*cut), {}, 0, rest);
-    if (!kept) return fail(kept.error());
+    LODESTONE_TRY(kept);
     if (!kept->cut) {
       Result<MeasuredLevel> finest = maker.plain(0, rest);
-      if (!finest) return fail(finest.error());
+      LODESTONE_TRY(finest);
       kept->cut = std::move(*finest);
     }
     if (kept->jumps) jumped = jump_shortfall(*plan, jump, kept->cut->level.triangles);

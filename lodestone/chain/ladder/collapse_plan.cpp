@@ -54,16 +54,16 @@ Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t sma
   plan.max_skin_influences_ = constraints.max_skin_influences;
   plan.tangents_ = constraints.tangents;
   Result<std::vector<std::vector<std::uint8_t>>> untouched = untouched_triangles(original, constraints);
-  if (!untouched) return fail(untouched.error());
+  LODESTONE_TRY(untouched);
   plan.untouched_ = std::move(*untouched);
   Model working;  // what the constraints are about
   working.instances = original.instances;
   Result<std::vector<Mesh>> meshes = working_meshes(original, plan.placings_, constraints, plan.untouched_, task);
-  if (!meshes) return fail(meshes.error());
+  LODESTONE_TRY(meshes);
   working.meshes = std::move(*meshes);
   Result<std::vector<VertexConstraints>> told =
       vertex_constraints(working.meshes.empty() ? original : working, constraints);
-  if (!told) return fail(told.error());
+  LODESTONE_TRY(told);
   plan.working_ = std::move(working.meshes);
   plan.options_.resize(original.meshes.size());
   plan.logs_.resize(original.meshes.size());
@@ -74,8 +74,7 @@ Result<CollapsePlan> CollapsePlan::create(const Model& original, std::size_t sma
     const std::size_t triangles = plan.mesh(m).triangles.size();
     if (plan.uses_[m] == 0 || triangles == 0) continue;
     const double share = static_cast<double>(triangles * plan.uses_[m]) / static_cast<double>(all);
-    const Result<void> planned = plan.plan_mesh(m, target, constraints, std::move((*told)[m]), task.part(share));
-    if (!planned) return fail(planned.error());
+    LODESTONE_TRY(plan.plan_mesh(m, target, constraints, std::move((*told)[m]), task.part(share)));
   }
   plan.merge();
   plan.count_triangles();
@@ -95,7 +94,7 @@ Result<void> CollapsePlan::plan_mesh(std::size_t m, std::size_t target, const Si
   options.input = Input::valid;
   Result<simplify::EdgeCollapseResult> run =
       simplify::collapse_edges(mesh(m), options, constraints.vanishes() ? task.part(0.7) : task);
-  if (!run) return fail(run.error());
+  LODESTONE_TRY(run);
   logs_[m] = std::move(*run->log);
   add(locked_, run->locked);
   if (!constraints.vanishes()) return {};
@@ -108,7 +107,7 @@ Result<void> CollapsePlan::plan_mesh(std::size_t m, std::size_t target, const Si
   thin.metric = placings_[m];
   thin.input = Input::valid;
   Result<simplify::PruneOrder> parts = simplify::prune_order(mesh(m), thin, task.part(0.3));
-  if (!parts) return fail(parts.error());
+  LODESTONE_TRY(parts);
   thin_[m] = std::move(*parts);
   return {};
 }
@@ -222,7 +221,7 @@ Result<Model> CollapsePlan::model_after(std::size_t count, Task task) const {
       continue;
     }
     Result<Mesh> made = mesh_after(m, at[m], error, task.part(share));
-    if (!made) return fail(made.error());
+    LODESTONE_TRY(made);
     model.meshes.push_back(std::move(*made));
   }
   return model;
@@ -248,7 +247,7 @@ Result<Mesh> CollapsePlan::mesh_after(std::size_t m, const Progress& progress, d
     }
   }
   Result<ReplayResult> replayed = replay(mesh(m), logs_[m], progress.collapses, options, task);
-  if (!replayed) return fail(replayed.error());
+  LODESTONE_TRY(replayed);
   if (keep_area_) {
     simplify::grow_parts(mesh(m), thin, area, error, placings_[m], replayed->origin, replayed->mesh);
   }

@@ -78,10 +78,10 @@ void add_spheres(const Model& model, std::size_t mesh_index, const std::vector<C
 }  // namespace
 
 Result<std::vector<VertexConstraints>> vertex_constraints(const Model& model, const SimplifyConstraints& constraints) {
-  if (const Result<void> ok = validate(model); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(model));
   std::vector<VertexConstraints> out(model.meshes.size());
   const Result<std::vector<std::vector<std::uint8_t>>> untouched = untouched_triangles(model, constraints);
-  if (!untouched) return fail(untouched.error());
+  LODESTONE_TRY(untouched);
   for (std::size_t m = 0; m < untouched->size(); ++m) {
     out[m].no_move = vertices_of_triangles(model.meshes[m], (*untouched)[m]);
   }
@@ -93,7 +93,7 @@ Result<std::vector<VertexConstraints>> vertex_constraints(const Model& model, co
     if (!constraints.weight_attribute.empty()) {
       if (const AttributeStream* stream = weight_stream(mesh, constraints.weight_attribute); stream != nullptr) {
         found = true;
-        if (const Result<void> ok = add_attribute(mesh, *stream, out[m].weights); !ok) return fail(ok.error());
+        LODESTONE_TRY(add_attribute(mesh, *stream, out[m].weights));
       }
     }
     if (!constraints.spheres.empty()) add_spheres(model, m, constraints.spheres, out[m]);

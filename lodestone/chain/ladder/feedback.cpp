@@ -91,7 +91,7 @@ Result<TrackedLevel> weighted(const FeedbackSource& source, TrackedLevel best, E
     raise_weights(source.start, current, options.weights, task);
     weight_borders(source.start, kBorder, options.weights, task);
     Result<simplify::EdgeCollapseResult> made = simplify::collapse_edges(source.start, options, task.part(0.3));
-    if (!made) return fail(made.error());
+    LODESTONE_TRY(made);
     if (made->mesh.triangles.empty() || task.cancelled()) break;
     current = TrackedLevel(source.target, std::move(made->mesh), task);
     if (!(current.max() < best.max()) || current.mean() > kMeanSlack * start_mean) continue;
@@ -143,7 +143,7 @@ Result<TrackedLevel> redistribute_rounds(const FeedbackSource& source, TrackedLe
     const Task part =
         task.part(1.0 / kRounds, fmt::format("round {}, maximum {}", round + 1, short_number(best.max())));
     Result<TrackedLevel> next = redistribute_triangles(source, current, options, part);
-    if (!next) return fail(next.error());
+    LODESTONE_TRY(next);
     if (next->mesh().triangles.empty() || next->mean() > most_mean || next->mesh().triangles.size() > triangles) break;
     ++idle;
     const TrackedLevel::Faults faults = next->faults(task);
@@ -166,7 +166,7 @@ Result<bool> holds_goal(const FeedbackSource& source, TrackedLevel& level, const
   options.queries = kCertifyQueries;
   options.input = Input::valid;
   const Result<measure::Distance> d = source.reference->distance_to(make_model(Mesh(level.mesh())), options, task);
-  if (!d) return fail(d.error());
+  LODESTONE_TRY(d);
   const double most = kCertify * source.goal;
   if (d->bound <= most) return true;
   if (d->forward.bound > most) level.probe_error(d->forward.max_at, true, task);
@@ -184,12 +184,12 @@ Result<std::optional<TrackedLevel>> within_goal(const FeedbackSource& source, co
   bool found = false;
   Result<TrackedLevel> level = redistribute_triangles(source, start, options, task);
   const auto look = [&]() -> Result<void> {
-    if (!level) return fail(level.error());
+    LODESTONE_TRY(level);
     found = !level->mesh().triangles.empty() && level->mesh().triangles.size() <= options.most_triangles;
     found = found && level->max() <= most && level->faults(task).no_more_than(most_faults);
     if (!found) return {};
     const Result<bool> holds = holds_goal(source, *level, task);
-    if (!holds) return fail(holds.error());
+    LODESTONE_TRY(holds);
     found = *holds;
     return {};
   };
@@ -205,7 +205,7 @@ Result<std::optional<TrackedLevel>> within_goal(const FeedbackSource& source, co
     level = redistribute_triangles(source, *level, options, task);
     looked = look();
   }
-  if (!looked) return fail(looked.error());
+  LODESTONE_TRY(looked);
   if (!found) return std::nullopt;
   return std::make_optional(std::move(*level));
 }
@@ -227,7 +227,7 @@ Result<std::optional<TrackedLevel>> fewest_within_goal(const FeedbackSource& sou
     options.most_triangles = static_cast<std::size_t>(shrink * static_cast<double>(now));
     if (options.most_triangles == 0) break;
     Result<std::optional<TrackedLevel>> next = within_goal(source, level, most_faults, options, part);
-    if (!next) return fail(next.error());
+    LODESTONE_TRY(next);
     if (*next) {
       if (!best) shrink = kShrink;
       best = std::move(*next);
@@ -308,7 +308,7 @@ Result<Mesh> apply_feedback(const FeedbackSource& source, Mesh plain, Effort eff
   const TrackedLevel level(source.target, std::move(plain), task);
   Result<TrackedLevel> improved = fits ? fitted(source, level, task) : weighted(source, level, effort, task);
   if (task.cancelled()) return cancelled_error("shaping");
-  if (!improved) return fail(improved.error());
+  LODESTONE_TRY(improved);
   if (!has_goal) return improved->mesh();
   // What fitting spoils is not gone into: from the plain level then, and at last as without fitting.
   struct Way {
@@ -320,7 +320,7 @@ Result<Mesh> apply_feedback(const FeedbackSource& source, Mesh plain, Effort eff
   for (const Way& way : ways) {
     Result<std::optional<TrackedLevel>> fewest = fewest_within_goal(source, *way.start, way.fits, task);
     if (task.cancelled()) return cancelled_error("shaping");
-    if (!fewest) return fail(fewest.error());
+    LODESTONE_TRY(fewest);
     if (*fewest) return (*fewest)->mesh();
   }
   return level.mesh();

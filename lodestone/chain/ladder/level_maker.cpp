@@ -28,7 +28,7 @@ Result<MeasuredLevel> LevelMaker::plain(std::size_t prefix, const Task& task) co
   MeasuredLevel cut;
   const Stopwatch making;
   Result<Model> model = plan_.model_after(prefix, task.part(0.3));
-  if (!model) return fail(model.error());
+  LODESTONE_TRY(model);
   cut.simplify_seconds = making.total();
   return measured(std::move(cut), prefix, std::move(*model), Effort::fast, task.part(0.7));
 }
@@ -39,7 +39,7 @@ Result<MeasuredLevel> LevelMaker::with_feedback(std::size_t prefix, const Task& 
   MeasuredLevel improved;
   const Stopwatch making;
   Result<Model> model = plan_.model_with_feedback(prefix, effort_, goal, targets_, task.part(0.6, "shaping"));
-  if (!model) return fail(model.error());
+  LODESTONE_TRY(model);
   improved.simplify_seconds = cut->simplify_seconds + making.total();
   improved.measure_seconds = cut->measure_seconds;
   Result<MeasuredLevel> made = measured(std::move(improved), prefix, std::move(*model), effort_, task.part(0.2));
@@ -65,7 +65,7 @@ Result<MeasuredLevel> LevelMaker::measured(MeasuredLevel cut, std::size_t prefix
                                            const Task& task) const {
   const Stopwatch measuring;
   const Result<measure::Distance> d = reference_.steady_distance_to(model, distance_, task);
-  if (!d) return fail(d.error());
+  LODESTONE_TRY(d);
   cut.prefix = prefix;
   cut.measure_seconds += measuring.total();
   cut.level.triangles = drawn_triangles(model);

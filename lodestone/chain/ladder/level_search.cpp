@@ -20,7 +20,7 @@ struct Search {
 
   // The cut becomes the best, whatever its error.
   Result<void> take(Result<MeasuredLevel> cut) {
-    if (!cut) return fail(cut.error());
+    LODESTONE_TRY(cut);
     count(*cut);
     best = std::move(*cut);
     return {};
@@ -53,10 +53,10 @@ struct Search {
   Result<void> run(const LevelMaker& maker, std::size_t first, Within&& within, const Task& task) {
     for (std::size_t prefix = first != 0 ? first : next(maker.plan()); prefix != 0; prefix = next(maker.plan())) {
       Result<MeasuredLevel> cut = maker.plain(prefix, task.part(0.1));
-      if (!cut) return fail(cut.error());
+      LODESTONE_TRY(cut);
       if (within(*cut)) {
         good = prefix;
-        if (const Result<void> ok = take(std::move(cut)); !ok) return ok;
+        LODESTONE_TRY(take(std::move(cut)));
       } else {
         count(*cut);
         bad = prefix;
@@ -78,7 +78,7 @@ Result<void> fewest_with_feedback(LevelMaker& maker, Search& search, std::size_t
   starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
   for (const std::size_t start : starts) {
     Result<MeasuredLevel> cut = maker.with_feedback(start, task.part(0.3), limit);
-    if (!cut) return fail(cut.error());
+    LODESTONE_TRY(cut);
     // One that has fewer triangles than the plan's end is not the end.
     const std::size_t reached = std::min(plan.prefix_for(cut->level.triangles), plan.size() - 1);
     if (cut->level.error.measured_error <= limit && std::max(start, reached) > last) {
@@ -100,8 +100,7 @@ Result<MeasuredLevel> find_error_cut(LevelMaker& maker, Starts& starts, double l
   const Task probes = task.part(shapes ? 0.3 : 0.9, "searching");
   Search search{starts.plain, plan.size() + 1, kNear, {}};
   const auto within = [&](const MeasuredLevel& cut) { return cut.level.error.measured_error <= limit; };
-  const Result<void> found = search.run(maker, plan.size(), within, probes);
-  if (!found) return fail(found.error());
+  LODESTONE_TRY(search.run(maker, plan.size(), within, probes));
   starts.plain = search.good;
   if (shapes && search.good < plan.size()) {
     const Task shaping = task.part(0.7, "shaping");
@@ -111,7 +110,7 @@ Result<MeasuredLevel> find_error_cut(LevelMaker& maker, Starts& starts, double l
   if (search.good < starts.with_feedback)
     search.good = starts.with_feedback;  // improved, the last level holds what plain ones don't
   if (!search.best || search.best->prefix != search.good) {
-    if (const Result<void> ok = search.take(maker.plain(search.good, task)); !ok) return fail(ok.error());
+    LODESTONE_TRY(search.take(maker.plain(search.good, task)));
   }
   return search.finish();
 }
@@ -130,7 +129,7 @@ Result<std::vector<CurvePoint>> curve_before(const LevelMaker& maker, const Meas
   const auto start = static_cast<double>(maker.plan().triangles_after(0));
   const auto between = static_cast<std::size_t>(std::sqrt(start * static_cast<double>(cut.level.triangles)));
   const Result<MeasuredLevel> probe = maker.plain(maker.plan().prefix_for(between), task);
-  if (!probe) return fail(probe.error());
+  LODESTONE_TRY(probe);
   const double told = std::max(probe->level.error.measured_error, kLeastTelling * e.diagonal);
   finer.push_back({probe->level.triangles, told});
   return finer;
@@ -142,7 +141,7 @@ Result<InLine> keep_in_line(LevelMaker& maker, MeasuredLevel cut, const std::vec
                             std::size_t last, const Task& task) {
   constexpr double kNear = 0.03;
   const Result<std::vector<CurvePoint>> curve = curve_before(maker, cut, finer, task.part(0.1));
-  if (!curve) return fail(curve.error());
+  LODESTONE_TRY(curve);
   const auto in_line = [&](const MeasuredLevel& c) {
     const LevelError& e = c.level.error;
     return e.measured_error <= most_in_line(*curve, c.level.triangles, e.diagonal, maker.plan().prunes());
@@ -155,12 +154,12 @@ Result<InLine> keep_in_line(LevelMaker& maker, MeasuredLevel cut, const std::vec
   out.jumps = true;
   Search search{last, cut.prefix, kNear, {}};
   search.count(cut);
-  if (const Result<void> ok = search.run(maker, 0, in_line, task.part(0.6)); !ok) return fail(ok.error());
+  LODESTONE_TRY(search.run(maker, 0, in_line, task.part(0.6)));
   if (!search.best) return out;
   Result<MeasuredLevel> improved = maker.with_feedback(search.good, task.part(0.3));
-  if (!improved) return fail(improved.error());
+  LODESTONE_TRY(improved);
   if (in_line(*improved)) {
-    if (const Result<void> ok = search.take(std::move(improved)); !ok) return fail(ok.error());
+    LODESTONE_TRY(search.take(std::move(improved)));
   } else {
     search.count(*improved);
   }

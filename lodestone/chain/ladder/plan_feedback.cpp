@@ -75,7 +75,7 @@ Result<Mesh> CollapsePlan::mesh_with_feedback(std::size_t m, Mesh plain, Effort 
   std::optional<measure::Reference>& reference = targets.references[m];
   if (goal > 0 && !reference) {
     Result<measure::Reference> made = measure::Reference::create(make_model(mesh(m)), task);
-    if (!made) return fail(made.error());
+    LODESTONE_TRY(made);
     reference = std::move(*made);
   }
   const simplify::EdgeCollapseOptions& options = options_[m];
@@ -85,7 +85,7 @@ Result<Mesh> CollapsePlan::mesh_with_feedback(std::size_t m, Mesh plain, Effort 
     ReplayOptions of_valid;
     of_valid.input = Input::valid;
     Result<ReplayResult> replayed = replay(mesh(m), log, log.prefix_for(kFiner * triangles), of_valid, task);
-    if (!replayed) return fail(replayed.error());
+    LODESTONE_TRY(replayed);
     finer = std::move(replayed->mesh);
   }
   const double scale = length(placings_[m].direction({1, 0, 0}));
@@ -105,7 +105,7 @@ Result<Model> CollapsePlan::model_with_feedback(std::size_t count, Effort effort
   for (std::size_t m = 0; m < logs_.size(); ++m) {
     if (!can_take_feedback(m)) continue;
     Result<Mesh> made = mesh_with_feedback(m, std::move(model->meshes[m]), effort, goal, targets, task.part(share));
-    if (!made) return fail(made.error());
+    LODESTONE_TRY(made);
     model->meshes[m] = std::move(*made);
   }
   return model;

@@ -92,7 +92,7 @@ Result<TrackedLevel> redistribute_triangles(const FeedbackSource& source, const 
   collapse.weights = weights_for(level, split.mesh, options);
   if (options.keeps_borders) weight_borders(split.mesh, kNoCollapseWeight, collapse.weights, task);
   Result<simplify::EdgeCollapseResult> made = simplify::collapse_edges(split.mesh, collapse, task);
-  if (!made) return fail(made.error());
+  LODESTONE_TRY(made);
   TrackedLevel next(source.target, std::move(made->mesh), task, &level);
   simplify::FitOptions fit;
   fit.solves = options.fits ? kLocalSolves : 0;

@@ -23,9 +23,9 @@ namespace {
 template <class Snap>
 Result<void> weld_after(Mesh& mesh, const Snap& snap, const Task& task) {
   const Result<std::size_t> moved = snap(mesh);
-  if (!moved) return fail(moved.error());
+  LODESTONE_TRY(moved);
   Result<Mesh> welded = weld_exact(std::move(mesh), task);
-  if (!welded) return fail(welded.error());
+  LODESTONE_TRY(welded);
   mesh = std::move(*welded);
   return {};
 }
@@ -57,7 +57,7 @@ Result<std::vector<Mesh>> working_meshes(const Model& model, const std::vector<M
       };
       done = weld_after(out[m], snap, task);
     }
-    if (!done) return fail(done.error());
+    LODESTONE_TRY(done);
   }
   return out;
 }

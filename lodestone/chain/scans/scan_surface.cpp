@@ -29,7 +29,7 @@ struct Distances {
 // From points to the surface.
 Result<Distances> distances_of(const PointCloud& cloud, const Model& model, const Task& task) {
   const Result<spatial::Surface> surface = spatial::flatten(model, Input::valid, task);
-  if (!surface) return fail(surface.error());
+  LODESTONE_TRY(surface);
   const spatial::Bvh tree(*surface, task);
   constexpr std::size_t kChunk = 4096;
   return parallel_reduce(
@@ -70,10 +70,10 @@ Result<void> add_normals(PointCloud& cloud, std::vector<std::string>& warnings, 
   }
   if (given) return {};
   Result<points::Normals> made = points::estimate_normals(cloud, {}, task);
-  if (!made) return fail(made.error());
+  LODESTONE_TRY(made);
   cloud.normals = std::move(made->normals);
   Result<points::Normals> oriented = points::orient_normals(cloud, {}, task);
-  if (!oriented) return fail(oriented.error());
+  LODESTONE_TRY(oriented);
   cloud.normals = std::move(oriented->normals);
   warnings.emplace_back("the scan has no normals; they were estimated from its points");
   return {};
@@ -84,17 +84,17 @@ Result<Mesh> contour_splat(const PointCloud& cloud, const voxel::ScanOptions& op
   voxel::ScanOptions splat = options;
   splat.splat_radius = 1;  // sheets of one voxel would fall apart
   const Result<voxel::ScanSolid> solid = voxel::scan_solid(cloud, splat, task);
-  if (!solid) return fail(solid.error());
+  LODESTONE_TRY(solid);
   figures = solid->figures;
   const Result<ScalarVolume<std::uint8_t>> shares = voxel::downsample(solid->volume, solid->volume.grid.size, task);
-  if (!shares) return fail(shares.error());
+  LODESTONE_TRY(shares);
   return voxel::isosurface(*shares, {127.5}, task);
 }
 
 Result<Mesh> contour_distance(const PointCloud& cloud, const voxel::ScanOptions& options, voxel::ScanFigures& figures,
                               const Task& task) {
   const Result<voxel::ScanDistance> distance = voxel::scan_distance(cloud, options, task);
-  if (!distance) return fail(distance.error());
+  LODESTONE_TRY(distance);
   figures = distance->figures;
   Result<Mesh> mesh = voxel::isosurface(distance->volume, {0}, task);
   if (!mesh || !figures.open) return mesh;
@@ -104,7 +104,7 @@ Result<Mesh> contour_distance(const PointCloud& cloud, const voxel::ScanOptions&
 }  // namespace
 
 Result<ScanSurface> surface_of_scan(PointCloud cloud, const ScanSurfaceOptions& options, Task task) {
-  if (const Result<void> ok = validate(cloud, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(cloud, task));
   ScanSurface out;
   std::vector<std::string> warnings = cloud.warnings;
   voxel::ScanOptions scan;
@@ -113,12 +113,11 @@ Result<ScanSurface> surface_of_scan(PointCloud cloud, const ScanSurfaceOptions& 
   scan.most_bytes = available_memory_bytes() / 10 * 8;
   voxel::ScanFigures figures;
   if (!options.splat) {
-    const Result<void> normals = add_normals(cloud, warnings, task.part(0.3, "estimating normals"));
-    if (!normals) return fail(normals.error());
+    LODESTONE_TRY(add_normals(cloud, warnings, task.part(0.3, "estimating normals")));
   }
   Result<Mesh> mesh = options.splat ? contour_splat(cloud, scan, figures, task.part(0.5, "making a solid"))
                                     : contour_distance(cloud, scan, figures, task.part(0.5, "measuring distances"));
-  if (!mesh) return fail(mesh.error());
+  LODESTONE_TRY(mesh);
   warnings.insert(warnings.end(), figures.warnings.begin(), figures.warnings.end());
   if (!cloud.colors.empty()) {
     const Task coloring = task.part(0.05, "coloring");
@@ -131,7 +130,7 @@ Result<ScanSurface> surface_of_scan(PointCloud cloud, const ScanSurfaceOptions& 
   out.close_radius = figures.close_radius;
   out.open = figures.open;
   const Result<Distances> d = distances_of(cloud, out.model, task.part(0.15, "measuring"));
-  if (!d) return fail(d.error());
+  LODESTONE_TRY(d);
   if (task.cancelled()) return cancelled_error("remeshing");
   out.mean_distance = d->sum / static_cast<double>(std::max<std::size_t>(1, cloud.size()));
   out.most_distance = d->most;

@@ -39,7 +39,7 @@ Result<void> check(std::span<const Model> models, const BooleanOptions& options)
 }  // namespace
 
 Result<BooleanResult> boolean(std::span<const Model> models, const BooleanOptions& options, Task task) {
-  if (const Result<void> ok = check(models, options); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(models, options));
   for (std::size_t i = 0; i < models.size(); ++i) {
     const Result<void> ok = validate(models[i], task);
     if (!ok) return fail(ok.error().code, ok.error().what, fmt::format("model {}, {}", i + 1, ok.error().where));
@@ -52,12 +52,12 @@ Result<BooleanResult> boolean(std::span<const Model> models, const BooleanOption
   solid_options.resolution = options.resolution * supersample;
   solid_options.margin = solid_options.multiple = supersample;
   const Result<VoxelGrid> grid = solid_grid(bounds_of(scene), {}, solid_options);
-  if (!grid) return fail(grid.error());
+  LODESTONE_TRY(grid);
   std::optional<Solid> solid;
   for (std::size_t i = 0; i < models.size(); ++i) {
     const Task part = task.part(0.6 / static_cast<double>(models.size()));
     Result<FillChoice> choice = choose_fill(models[i], options.voxel.fill, part);
-    if (!choice) return fail(choice.error());
+    LODESTONE_TRY(choice);
     choice->close = options.voxel.close;
     Result<Solid> made = solid_in(models[i], *choice, *grid, part);
     if (!made) {
@@ -72,18 +72,17 @@ Result<BooleanResult> boolean(std::span<const Model> models, const BooleanOption
       solid = std::move(*made);
       continue;
     }
-    const Result<void> combined = voxel::combine(solid->volume, made->volume, options.operations[i - 1]);
-    if (!combined) return fail(combined.error());
+    LODESTONE_TRY(voxel::combine(solid->volume, made->volume, options.operations[i - 1]));
   }
   if (solid->volume.set_count() == 0) return fail(ErrorCode::empty, "nothing is left: the result has no volume");
   Result<spatial::Surface> surface = spatial::flatten(scene, Input::valid, task);
-  if (!surface) return fail(surface.error());
+  LODESTONE_TRY(surface);
   solid->surface = std::move(*surface);
   out.seconds.prepare = watch.total() - out.seconds.voxelize;
   Result<VoxelLevels> levels = VoxelLevels::of_solid(std::move(*solid), out.fill, options.voxel, task);
-  if (!levels) return fail(levels.error());
+  LODESTONE_TRY(levels);
   Result<Mesh> mesh = levels->surface_at(options.resolution, task.part(0.3, "contouring"));
-  if (!mesh) return fail(mesh.error());
+  LODESTONE_TRY(mesh);
   out.resolution = levels->solid().volume.grid.size;
   out.voxels_inside = levels->voxels_inside();
   out.seconds.resample = levels->seconds().resample;

@@ -51,7 +51,7 @@ Result<void> collapse(const Model& model, const RemeshOptions& options, Mesh mes
   if (options.error > 0) ladder.errors = {options.error};
   ladder.start = make_model(std::move(mesh), model);
   Result<LadderResult> made = build_ladder(model, ladder, task);
-  if (!made) return fail(made.error());
+  LODESTONE_TRY(made);
   if (!made->shortfalls.empty()) out.shortfall = made->shortfalls.front().reason;
   if (made->ladder.levels.size() < 2) {
     return fail(ErrorCode::bad_argument, "the surface by voxels is not within the error that is asked for", {},
@@ -73,7 +73,7 @@ Result<void> finish_level(const Model& model, const RemeshOptions& options, Voxe
   if (reference != nullptr && !cut.distance) {
     const Stopwatch measuring;
     const Result<measure::Distance> d = reference->distance_to(level.model, detail::of_valid(options.distance), task);
-    if (!d) return fail(d.error());
+    LODESTONE_TRY(d);
     cut.distance = *d;
     out.seconds.measure += measuring.total();
   }
@@ -85,15 +85,15 @@ Result<void> finish_level(const Model& model, const RemeshOptions& options, Voxe
 }  // namespace
 
 Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Task task) {
-  if (const Result<void> ok = check(options); !ok) return fail(ok.error());
-  if (const Result<void> ok = validate(model, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(options));
+  LODESTONE_TRY(validate(model, task));
   const VoxelTarget target{options.resolution, options.triangles, options.error, options.then_collapse};
   RemeshResult out;
   const Stopwatch watch;
   const Result<std::uint32_t> finest = detail::finest_for(model, options.voxel, target, task.part(0.1));
-  if (!finest) return fail(finest.error());
+  LODESTONE_TRY(finest);
   Result<VoxelLevels> levels = VoxelLevels::create(model, options.voxel, *finest, task.part(0.3));
-  if (!levels) return fail(levels.error());
+  LODESTONE_TRY(levels);
   // Collapsing measures by itself; surfaces made slab by slab are too large for it.
   const bool measures = options.measure && !levels->by_slabs() && !options.then_collapse;
   if (options.measure && levels->by_slabs()) {
@@ -103,20 +103,19 @@ Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options, Ta
   if (measures || detail::needs_reference(target)) {
     const Stopwatch preparing;
     Result<measure::Reference> made = measure::Reference::create(model, task.part(0.1));
-    if (!made) return fail(made.error());
+    LODESTONE_TRY(made);
     reference.emplace(std::move(*made));
     out.seconds.measure += preparing.total();
   }
   const measure::Reference* known = reference ? &*reference : nullptr;
   Result<VoxelCut> cut = detail::cut_for(*levels, target, *finest, known, options.distance, task.part(0.2));
-  if (!cut) return fail(cut.error());
+  LODESTONE_TRY(cut);
   add_figures(*levels, *cut, out);
   if (!levels->by_slabs()) detail::tell_vanished(*levels, model, *cut, out.warnings);
   if (!options.then_collapse) out.shortfall = detail::shortfall_of(target, *cut);
   const Task rest = task.part(0.3, options.then_collapse ? "collapsing" : "measuring");
-  const Result<void> done = options.then_collapse ? collapse(model, options, std::move(cut->mesh), out, rest)
-                                                  : finish_level(model, options, std::move(*cut), known, out, rest);
-  if (!done) return fail(done.error());
+  LODESTONE_TRY(options.then_collapse ? collapse(model, options, std::move(cut->mesh), out, rest)
+                                      : finish_level(model, options, std::move(*cut), known, out, rest));
   out.level.seconds = watch.total();
   return out;
 }

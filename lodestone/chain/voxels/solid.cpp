@@ -39,7 +39,7 @@ voxel::FillRule fill_for(const Topology& t) {
 
 Result<FillChoice> choose_fill(const Model& model, std::optional<voxel::FillRule> asked, const Task& task) {
   const Result<measure::Shape> shape = measure::shape_of(model, task);
-  if (!shape) return fail(shape.error());
+  LODESTONE_TRY(shape);
   const Topology& t = shape->topology;
   FillChoice out{asked.value_or(fill_for(t)), reason_of(t), t.closed, t.duplicate_faces > 0, asked.has_value()};
   if (out.closed || asked != voxel::FillRule::parity) return out;
@@ -94,9 +94,9 @@ Result<VoxelGrid> solid_grid(const Box3d& bounds, const FillChoice& choice, cons
 }
 
 Result<Solid> solid_of(const Model& model, const FillChoice& choice, const SolidOptions& options, Task task) {
-  if (const Result<void> ok = validate(model, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(model, task));
   const Result<VoxelGrid> grid = solid_grid(bounds_of(model), choice, options);
-  if (!grid) return fail(grid.error());
+  LODESTONE_TRY(grid);
   return solid_in(model, choice, *grid, task);
 }
 
@@ -114,12 +114,12 @@ std::vector<std::string> assumptions(const FillChoice& choice, std::uint64_t lea
 
 Result<Solid> solid_in(const Model& model, const FillChoice& choice, const VoxelGrid& grid, Task task) {
   const bool wraps = choice.fill == voxel::FillRule::shrinkwrap;
-  if (const Result<void> room = check_memory(grid, wraps ? 2.5 : 0.125); !room) return fail(room.error());
+  LODESTONE_TRY(check_memory(grid, wraps ? 2.5 : 0.125));
   Result<spatial::Surface> surface = spatial::flatten(model, task.part(0.3));
-  if (!surface) return fail(surface.error());
+  LODESTONE_TRY(surface);
   const voxel::VoxelizeOptions fill{choice.fill, close_voxels(choice, grid.spacing.x), Input::valid};
   Result<voxel::Voxelized> made = voxel::voxelize(*surface, grid, fill, task.part(0.7));
-  if (!made) return fail(made.error());
+  LODESTONE_TRY(made);
   if (made->volume.set_count() == 0) {
     return fail(ErrorCode::empty, "no voxel lies inside the model", {}, way_out_of_nothing(choice));
   }

@@ -34,7 +34,7 @@ Result<AttributeSource> AttributeSource::create(const Model& model, const Surfac
   }
   data->model = model;
   Result<bake::BakeSource> source = bake::BakeSource::create(data->model, task);
-  if (!source) return fail(source.error());
+  LODESTONE_TRY(source);
   // Nothing to take over: the surface stays as it is.
   if (options.texture_size > 0 || data->has_normals || source->has_color()) data->source = std::move(*source);
   return out;
@@ -48,22 +48,22 @@ Result<void> add_textures(Model& surface, const bake::BakeSource& source, const 
   bake::AtlasOptions atlas_options;
   atlas_options.texture_size = take.texture_size;
   const Result<bake::Atlas> atlas = bake::make_atlas(mesh, atlas_options, task.part(0.4));
-  if (!atlas) return fail(atlas.error());
+  LODESTONE_TRY(atlas);
   bake::BakeOptions options;
   options.texture_size = take.texture_size;
   Result<bake::Baked> baked = bake::bake_textures(atlas->mesh, source, options, task.part(0.6));
-  if (!baked) return fail(baked.error());
+  LODESTONE_TRY(baked);
   Material material;
   material.name = "baked";
   if (!baked->base_color.rgba.empty()) {
     const auto image = take.encode(baked->base_color, fmt::format("base_color_{}", level));
-    if (!image) return fail(image.error());
+    LODESTONE_TRY(image);
     material.base_color_texture = *image;
     material.base_color_pixels = std::make_shared<Pixels>(std::move(baked->base_color));
   }
   if (!baked->normal_map.rgba.empty()) {
     const auto image = take.encode(baked->normal_map, fmt::format("normal_{}", level));
-    if (!image) return fail(image.error());
+    LODESTONE_TRY(image);
     material.normal_texture = *image;
   }
   mesh = std::move(baked->mesh);
@@ -81,7 +81,7 @@ Result<void> AttributeSource::add_to(Model& surface, std::size_t level, Task tas
   bake::TransferOptions options;
   options.normals = data_->has_normals;
   Result<Mesh> made = bake::transfer_attributes(surface.meshes.front(), *data_->source, options, task);
-  if (!made) return fail(made.error());
+  LODESTONE_TRY(made);
   surface.meshes.front() = std::move(*made);
   return {};
 }

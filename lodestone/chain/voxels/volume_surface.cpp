@@ -112,7 +112,7 @@ Result<void> add_labels(const ScannedVolume& volume, std::span<const T> values, 
                         Model& model, const Task& task) {
   const VolumeView<T> view{volume.header.grid, values};
   const Result<std::map<std::int64_t, voxel::LabelBox>> boxes = voxel::label_boxes(view, task);
-  if (!boxes) return fail(boxes.error());
+  LODESTONE_TRY(boxes);
   if (boxes->empty()) return fail(ErrorCode::empty, "has no label but 0");
   for (const auto& [label, box] : *boxes) {
     if (task.cancelled()) return cancelled_error("contouring");
@@ -121,11 +121,11 @@ Result<void> add_labels(const ScannedVolume& volume, std::span<const T> values, 
     if (options.smooth > 0) {
       const Vec3d sigma = blur_of(options, mask.grid);
       const auto soft = voxel::gaussian(voxel::padded(mask, voxel::gaussian_reach(sigma)), sigma, task);
-      if (!soft) return fail(soft.error());
+      LODESTONE_TRY(soft);
       Result<Mesh> smoothed = contour(volume.header, soft->view(), {127.5}, task);
       if (smoothed) mesh = std::move(smoothed);  // a label of a few voxels may blur away: it stays as it is
     }
-    if (!mesh) return fail(mesh.error());
+    LODESTONE_TRY(mesh);
     mesh->name = fmt::format("label {}", label);
     mesh->groups.push_back({kNone, mesh->name});
     model.instances.push_back({static_cast<std::uint32_t>(model.meshes.size()), {}, mesh->name});
@@ -143,7 +143,7 @@ Result<Mesh> filtered_contour(const VolumeHeader& header, std::span<const T> val
   if (made && options.smooth > 0) {
     made = voxel::gaussian(std::move(*made), blur_of(options, header.grid), task);
   }
-  if (!made) return fail(made.error());
+  LODESTONE_TRY(made);
   return contour(header, made->view(), {iso, options.trilinear}, task);
 }
 
@@ -175,7 +175,7 @@ Result<double> choose_iso(const VolumeSurfaceOptions& options, const VolumeValue
 }  // namespace
 
 Result<VolumeSurface> surface_of(const ScannedVolume& volume, const VolumeSurfaceOptions& options, Task task) {
-  if (const Result<void> ok = validate(volume); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(volume));
   VolumeSurface out;
   const Range range = std::visit([&](const auto& values) { return range_of(values, task); }, volume.values);
   if (task.cancelled()) return cancelled_error("contouring");
@@ -193,15 +193,15 @@ Result<VolumeSurface> surface_of(const ScannedVolume& volume, const VolumeSurfac
   if (options.labels) {
     const Result<void> added =
         std::visit([&](const auto& values) { return add_labels(volume, values, options, model, task); }, volume.values);
-    if (!added) return fail(added.error());
+    LODESTONE_TRY(added);
   } else {
     const Result<double> iso = choose_iso(options, volume.values, range, model.warnings);
-    if (!iso) return fail(iso.error());
+    LODESTONE_TRY(iso);
     out.iso = *iso;
     Result<Mesh> mesh =
         std::visit([&](const auto& values) { return filtered_contour(volume.header, values, *iso, options, task); },
                    volume.values);
-    if (!mesh) return fail(mesh.error());
+    LODESTONE_TRY(mesh);
     Model made = make_model(std::move(*mesh));
     model.meshes = std::move(made.meshes);
     model.instances = std::move(made.instances);

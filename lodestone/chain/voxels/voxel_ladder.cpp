@@ -35,7 +35,7 @@ Result<Level> make_level(VoxelCut cut, const Model& original, double finer_error
   if (!cut.distance) {
     const Stopwatch measuring;
     Result<measure::Distance> d = reference.distance_to(level.model, detail::of_valid(distance), task);
-    if (!d) return fail(d.error());
+    LODESTONE_TRY(d);
     cut.distance = *d;
     measure_seconds += measuring.total();
   }
@@ -54,7 +54,7 @@ Result<void> add_levels(LadderResult& out, VoxelLevels& levels, const std::vecto
       out.shortfalls.push_back({i + 1, cut.error().what});
       break;
     }
-    if (!cut) return fail(cut.error());
+    LODESTONE_TRY(cut);
     if (std::string reason = detail::shortfall_of(targets[i], *cut); !reason.empty()) {
       out.shortfalls.push_back({i + 1, std::move(reason)});
     }
@@ -63,7 +63,7 @@ Result<void> add_levels(LadderResult& out, VoxelLevels& levels, const std::vecto
     const double before = out.measure_seconds;
     Result<Level> level = make_level(std::move(*cut), out.ladder.original, out.ladder.levels.back().error.error,
                                      reference, options.distance, out.measure_seconds, part);
-    if (!level) return fail(level.error());
+    LODESTONE_TRY(level);
     level->seconds = making.total();
     out.simplify_seconds += level->seconds - (out.measure_seconds - before);
     out.ladder.levels.push_back(std::move(*level));
@@ -77,12 +77,12 @@ Result<LadderResult> collapse_levels(Model original, const LadderOptions& option
   std::optional<Reference> reference;
   if (detail::needs_reference(first)) {
     Result<Reference> made = Reference::create(original, task);
-    if (!made) return fail(made.error());
+    LODESTONE_TRY(made);
     reference.emplace(std::move(*made));
   }
   const Reference* known = reference ? &*reference : nullptr;
   Result<VoxelCut> start = detail::cut_for(levels, first, finest, known, options.distance, task.part(0.3));
-  if (!start) return fail(start.error());
+  LODESTONE_TRY(start);
   std::vector<std::string> warnings = levels.solid().warnings;
   detail::tell_vanished(levels, original, *start, warnings);
   LadderOptions collapsing = options;
@@ -104,18 +104,16 @@ Result<LadderResult> separate_levels(Model original, const LadderOptions& option
   out.ladder.original = std::move(original);
   const Stopwatch preparing;
   const Result<Reference> reference = Reference::create(out.ladder.original, task.part(0.1));
-  if (!reference) return fail(reference.error());
+  LODESTONE_TRY(reference);
   out.measure_seconds = preparing.total();
   out.ladder.levels.push_back(detail::original_level(out.ladder.original, reference->diagonal()));
-  const Result<void> added = add_levels(out, levels, targets, finest, *reference, options, task.part(0.9));
-  if (!added) return fail(added.error());
+  LODESTONE_TRY(add_levels(out, levels, targets, finest, *reference, options, task.part(0.9)));
   return out;
 }
 
 Result<void> add_attributes(Ladder& ladder, const AttributeSource& source, const Task& task) {
   for (std::size_t level = 1; level < ladder.levels.size(); ++level) {
-    const Result<void> added = source.add_to(ladder.levels[level].model, level, task);
-    if (!added) return fail(added.error());
+    LODESTONE_TRY(source.add_to(ladder.levels[level].model, level, task));
   }
   return {};
 }
@@ -124,21 +122,21 @@ Result<void> add_attributes(Ladder& ladder, const AttributeSource& source, const
 
 Result<LadderResult> build_voxel_ladder(Model original, const LadderOptions& options, const VoxelLadderOptions& voxels,
                                         Task task) {
-  if (const Result<void> ok = detail::check_ladder(original, options, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(detail::check_ladder(original, options, task));
   if (original.meshes.size() != 1 || original.instances.size() != 1) {
     return fail(ErrorCode::bad_argument, "levels by voxels need an original of one mesh", {},
                 "flatten the scene first");
   }
   const Result<AttributeSource> source = AttributeSource::create(original, voxels.attributes, task.part(0.1));
-  if (!source) return fail(source.error());
+  LODESTONE_TRY(source);
   const std::vector<VoxelTarget> targets = targets_of(options, drawn_triangles(original));
   VoxelTarget first = targets.front();
   first.then_collapse = voxels.then_collapse;
   first.resolution = voxels.resolution;
   const Result<std::uint32_t> finest = detail::finest_for(original, voxels.voxel, first, task.part(0.1));
-  if (!finest) return fail(finest.error());
+  LODESTONE_TRY(finest);
   Result<VoxelLevels> levels = VoxelLevels::create(original, voxels.voxel, *finest, task.part(0.1));
-  if (!levels) return fail(levels.error());
+  LODESTONE_TRY(levels);
   LadderOptions without_pictures = options;  // they are compared when the levels have their colours
   without_pictures.image.reset();
   const Task making = task.part(options.image ? 0.4 : 0.6);
@@ -146,10 +144,9 @@ Result<LadderResult> build_voxel_ladder(Model original, const LadderOptions& opt
       voxels.then_collapse ? collapse_levels(std::move(original), without_pictures, *levels, first, *finest, making)
                            : separate_levels(std::move(original), without_pictures, *levels, targets, *finest, making);
   if (!out) return out;
-  if (const Result<void> added = add_attributes(out->ladder, *source, task); !added) return fail(added.error());
+  LODESTONE_TRY(add_attributes(out->ladder, *source, task));
   if (options.image) {
-    const Result<void> compared = detail::compare_pictures(*out, *options.image, task.part(0.2, "comparing pictures"));
-    if (!compared) return fail(compared.error());
+    LODESTONE_TRY(detail::compare_pictures(*out, *options.image, task.part(0.2, "comparing pictures")));
   }
   return out;
 }

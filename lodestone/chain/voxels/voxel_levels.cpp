@@ -89,10 +89,10 @@ std::string name_of_part(const Model& model, const Instance& instance, std::size
 
 Result<VoxelLevels> VoxelLevels::create(const Model& model, const VoxelOptions& options, std::uint32_t finest,
                                         Task task) {
-  if (const Result<void> ok = check(options, finest); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(options, finest));
   Stopwatch watch;
   Result<FillChoice> choice = choose_fill(model, options.fill, task.part(0.2));
-  if (!choice) return fail(choice.error());
+  LODESTONE_TRY(choice);
   choice->close = options.close;
   const bool slow = choice->fill == voxel::FillRule::winding || choice->fill == voxel::FillRule::shrinkwrap;
   const std::uint32_t usual = slow ? 2 : 4;
@@ -101,14 +101,14 @@ Result<VoxelLevels> VoxelLevels::create(const Model& model, const VoxelOptions& 
   solid_options.resolution = finest * supersample;
   solid_options.margin = solid_options.multiple = supersample;  // whole voxels of the finest level
   Result<VoxelGrid> grid = solid_grid(bounds_of(model), *choice, solid_options);
-  if (!grid) return fail(grid.error());
+  LODESTONE_TRY(grid);
   if (needs_slabs(*grid, supersample, options, *choice)) {
     Result<VoxelLevels> slabs = of_grid(model, *grid, *choice, options, task);
     if (slabs) slabs->seconds_.prepare = watch.total();
     return slabs;
   }
   Result<Solid> solid = solid_in(model, *choice, *grid, task.part(0.6));
-  if (!solid) return fail(solid.error());
+  LODESTONE_TRY(solid);
   Result<VoxelLevels> made = of_valid(std::move(*solid), *choice, options, task);
   if (!made) return made;
   made->seconds_.prepare = watch.total() - made->seconds_.voxelize;
@@ -120,7 +120,7 @@ Result<VoxelLevels> VoxelLevels::of_grid(const Model& model, const VoxelGrid& gr
                                          const VoxelOptions& options, const Task& task) {
   Solid solid;
   Result<spatial::Surface> surface = spatial::flatten(model, task);
-  if (!surface) return fail(surface.error());
+  LODESTONE_TRY(surface);
   solid.surface = std::move(*surface);
   solid.volume.grid = grid;
   Result<VoxelLevels> out = of_valid(std::move(solid), fill, options, task);
@@ -140,10 +140,10 @@ Result<Mesh> VoxelLevels::surface_by_slabs(std::uint32_t resolution, const Task&
   for (std::size_t k = 0; k < 3; ++k) size[k] = grid.size[k] / ratio;
   VoxelGrid level = grid;
   level.size = size;
-  if (const Result<void> room = check_memory(level, 0.2); !room) return fail(room.error());
+  LODESTONE_TRY(check_memory(level, 0.2));
   Result<voxel::SlabSurface> made =
       voxel::slab_surface(solid_->surface, grid, size, {fill_.fill, 0, Input::valid}, task);
-  if (!made) return fail(made.error());
+  LODESTONE_TRY(made);
   Stopwatch watch;
   voxel::project(made->mesh, *source_, grid.spacing.x * ratio, task);
   if (task.cancelled()) return cancelled_error("remeshing");
@@ -156,8 +156,8 @@ Result<Mesh> VoxelLevels::surface_by_slabs(std::uint32_t resolution, const Task&
 }
 
 Result<VoxelLevels> VoxelLevels::of_solid(Solid solid, const FillChoice& fill, const VoxelOptions& options, Task task) {
-  if (const Result<void> ok = validate(solid.volume); !ok) return fail(ok.error());
-  if (const Result<void> ok = validate(solid.surface, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(solid.volume));
+  LODESTONE_TRY(validate(solid.surface, task));
   return of_valid(std::move(solid), fill, options, task);
 }
 
@@ -199,7 +199,7 @@ Result<Mesh> VoxelLevels::surface_at(std::uint32_t resolution, Task task) {
   options.max_error = options_.adaptive * voxel;
   options.input = Input::valid;
   Result<simplify::EdgeCollapseResult> merged = simplify::collapse_edges(*mesh, options, task);
-  if (!merged) return fail(merged.error());
+  LODESTONE_TRY(merged);
   seconds_.collapse += watch.total();
   return std::move(merged->mesh);
 }
@@ -214,7 +214,7 @@ Result<Mesh> VoxelLevels::even_surface_at(std::uint32_t resolution, const Task& 
   const std::array<std::uint32_t, 3> size = size_at(resolution);
   VoxelGrid level = bits.grid;
   level.size = size;
-  if (const Result<void> room = check_memory(level, 1.2); !room) return fail(room.error());
+  LODESTONE_TRY(check_memory(level, 1.2));
   Stopwatch watch;
   const auto thin = [&](Error error) {
     if (error.code != ErrorCode::empty) return fail(std::move(error));
@@ -229,7 +229,7 @@ Result<Mesh> VoxelLevels::even_surface_at(std::uint32_t resolution, const Task& 
   }
   const auto shares =
       options_.keep_thin ? voxel::downsample_thin(bits, size, task) : voxel::downsample(bits, size, task);
-  if (!shares) return fail(shares.error());
+  LODESTONE_TRY(shares);
   seconds_.resample += watch.lap();
   const Vec3d voxel = shares->grid.spacing;
   const double longest = std::max({voxel.x, voxel.y, voxel.z});

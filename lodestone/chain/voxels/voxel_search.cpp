@@ -65,7 +65,7 @@ std::size_t start_triangles(std::size_t target, voxel::FillRule fill) {
 
 Result<VoxelCut> cut_at(VoxelLevels& levels, std::uint32_t resolution, const Task& task) {
   Result<Mesh> mesh = levels.surface_at(resolution, task);
-  if (!mesh) return fail(mesh.error());
+  LODESTONE_TRY(mesh);
   return VoxelCut{resolution, std::move(*mesh), {}};
 }
 
@@ -111,7 +111,7 @@ Result<VoxelCut> find_error(VoxelLevels& levels, double limit, std::uint32_t gue
     if (mesh) {
       cut.mesh = std::move(*mesh);
       const Result<measure::Distance> d = reference.distance_to(make_model(cut.mesh), of_valid(distance), task);
-      if (!d) return fail(d.error());
+      LODESTONE_TRY(d);
       cut.distance = *d;
       error = d->trusted_max();
     }
@@ -144,7 +144,7 @@ Result<std::uint32_t> finest_for(const Model& model, const VoxelOptions& options
   if (target.resolution > 0) return target.resolution;
   if (target.triangles == 0) return target.error > 0 ? kMostForError : kUsual;
   const Result<Growth> growth = growth_of(model, options, task);
-  if (!growth) return fail(growth.error());
+  LODESTONE_TRY(growth);
   if (!(growth->per_square > 0)) return kUsual;
   const std::size_t wanted = target.then_collapse ? start_triangles(target.triangles, growth->fill) : target.triangles;
   const double predicted = std::sqrt(static_cast<double>(wanted) / growth->per_square);

@@ -70,10 +70,10 @@ std::size_t element_bytes(std::string_view type, std::size_t component) {
 Result<ByteSpan> elements(const Document::Data& data, const Json& holder, std::uint64_t count, std::size_t size,
                           bool use_stride, std::size_t& stride, const std::string& where) {
   const Result<std::size_t> view_index = index_member(holder, "bufferView", data.views.size(), "buffer views", where);
-  if (!view_index) return fail(view_index.error());
+  LODESTONE_TRY(view_index);
   const View& view = data.views[*view_index];
   const Result<std::uint64_t> offset = uint_member(holder, "byteOffset", 0, where);
-  if (!offset) return fail(offset.error());
+  LODESTONE_TRY(offset);
   stride = use_stride && view.stride != 0 ? view.stride : size;
   if (stride < size) {
     return fail(ErrorCode::bad_format,
@@ -108,7 +108,7 @@ std::uint32_t load_index(const std::byte* at, ComponentType type) {
 Result<void> apply_sparse(const Document::Data& data, const Json& sparse, std::uint64_t count, std::size_t size,
                           std::vector<std::byte>& dense, const std::string& where) {
   const Result<std::uint64_t> replaced = uint_member(sparse, "count", 0, where);
-  if (!replaced) return fail(replaced.error());
+  LODESTONE_TRY(replaced);
   if (*replaced == 0) return {};
   if (*replaced > count) {
     return fail(ErrorCode::bad_format, fmt::format("sparse.count is {}, the accessor has {}", *replaced, count), where);
@@ -119,16 +119,16 @@ Result<void> apply_sparse(const Document::Data& data, const Json& sparse, std::u
     return fail(ErrorCode::bad_format, "sparse lacks indices or values", where);
   }
   const Result<std::uint64_t> number = uint_member(*indices, "componentType", 0, where);
-  if (!number) return fail(number.error());
+  LODESTONE_TRY(number);
   const std::optional<ComponentType> type = component_type(*number);
   if (!type || (*type != ComponentType::uint8 && *type != ComponentType::uint16 && *type != ComponentType::uint32)) {
     return fail(ErrorCode::bad_format, fmt::format("sparse index componentType {} is not allowed", *number), where);
   }
   std::size_t index_stride = 0, value_stride = 0;
   const Result<ByteSpan> index_bytes = elements(data, *indices, *replaced, size_of(*type), false, index_stride, where);
-  if (!index_bytes) return fail(index_bytes.error());
+  LODESTONE_TRY(index_bytes);
   const Result<ByteSpan> value_bytes = elements(data, *values, *replaced, size, false, value_stride, where);
-  if (!value_bytes) return fail(value_bytes.error());
+  LODESTONE_TRY(value_bytes);
   for (std::size_t i = 0; i < *replaced; ++i) {
     const std::uint32_t target = load_index(index_bytes->data() + i * index_stride, *type);
     if (target >= count) {
@@ -198,9 +198,9 @@ Result<Accessor> find_accessor(const Document::Data& data, std::size_t index, Bu
     return fail(ErrorCode::bad_format, std::move(what), out.where, std::move(remedy));
   };
   const Result<std::uint64_t> count = uint_member(json, "count", 0, out.where);
-  if (!count) return fail(count.error());
+  LODESTONE_TRY(count);
   const Result<std::uint64_t> number = uint_member(json, "componentType", 0, out.where);
-  if (!number) return fail(number.error());
+  LODESTONE_TRY(number);
   const std::optional<ComponentType> type = component_type(*number);
   if (!type) return bad(fmt::format("componentType {} is unknown", *number));
   const std::string shape = string_member(json, "type");
@@ -216,7 +216,7 @@ Result<Accessor> find_accessor(const Document::Data& data, std::size_t index, Bu
   const Json* sparse = member(json, "sparse");
   if (const Json* view = member(json, "bufferView"); view != nullptr) {
     const Result<ByteSpan> bytes = elements(data, json, *count, size, true, out.stride, out.where);
-    if (!bytes) return fail(bytes.error());
+    LODESTONE_TRY(bytes);
     out.data = bytes->data();
   } else if (*count > data.file_bytes) {
     return bad(fmt::format("{} elements without a buffer view, the file has {} bytes", *count, data.file_bytes));

@@ -74,11 +74,11 @@ Result<void> check_asset(const Document::Data& data) {
 // The first `limit` bytes of the file at most.
 Result<std::string> read_part(const std::filesystem::path& path, std::uint64_t limit) {
   Result<InputFile> file = InputFile::open(path);
-  if (!file) return fail(file.error());
+  LODESTONE_TRY(file);
   if (limit >= file->size()) return read_file(path);
   std::string bytes(static_cast<std::size_t>(limit), '\0');
   const Result<std::size_t> got = file->read(std::as_writable_bytes(std::span(bytes)));
-  if (!got) return fail(got.error());
+  LODESTONE_TRY(got);
   bytes.resize(*got);
   return bytes;
 }
@@ -88,11 +88,11 @@ Result<ByteSpan> external_file(Loader& loader, const std::string& uri, std::uint
     return fail(ErrorCode::bad_format, fmt::format("names the file '{}', but was read from memory", uri), where);
   }
   const Result<std::filesystem::path> path = resolve_uri(loader.folder, uri, where);
-  if (!path) return fail(path.error());
+  LODESTONE_TRY(path);
   const auto known = loader.files.find(path->string());
   if (known != loader.files.end() && known->second.size() >= limit) return known->second;
   Result<std::string> bytes = read_part(*path, limit);
-  if (!bytes) return fail(bytes.error());
+  LODESTONE_TRY(bytes);
   loader.data.files.push_back(*path);
   return loader.files[path->string()] = keep(loader.data, std::move(*bytes));
 }
@@ -100,7 +100,7 @@ Result<ByteSpan> external_file(Loader& loader, const std::string& uri, std::uint
 Result<ByteSpan> load_buffer(Loader& loader, std::size_t index, Json& buffer) {
   const std::string where = place(loader.data, "buffer", index);
   const Result<std::uint64_t> length = uint_member(buffer, "byteLength", 0, where);
-  if (!length) return fail(length.error());
+  LODESTONE_TRY(length);
   const std::string uri = string_member(buffer, "uri");
   ByteSpan bytes;
   if (uri.empty()) {
@@ -108,12 +108,12 @@ Result<ByteSpan> load_buffer(Loader& loader, std::size_t index, Json& buffer) {
     bytes = as_bytes_of(loader.bin);
   } else if (is_data_uri(uri)) {
     Result<DataUri> decoded = decode_data_uri(uri, where);
-    if (!decoded) return fail(decoded.error());
+    LODESTONE_TRY(decoded);
     bytes = keep(loader.data, std::move(decoded->bytes));
     buffer.erase("uri");
   } else {
     const Result<ByteSpan> file = external_file(loader, uri, *length, where);
-    if (!file) return fail(file.error());
+    LODESTONE_TRY(file);
     bytes = *file;
   }
   if (*length > bytes.size()) {
@@ -145,7 +145,7 @@ Result<void> load_buffers(Loader& loader) {
       continue;
     }
     const Result<ByteSpan> bytes = load_buffer(loader, i, (*buffers)[i]);
-    if (!bytes) return fail(bytes.error());
+    LODESTONE_TRY(bytes);
     loader.data.buffers.push_back(*bytes);
   }
   return {};
@@ -159,7 +159,7 @@ Result<void> load_images(Loader& loader) {
     if (uri.empty() || is_data_uri(uri) || !loader.has_folder) continue;
     const std::string where = place(loader.data, "image", i);
     const Result<std::filesystem::path> path = resolve_uri(loader.folder, uri, where);
-    if (!path) return fail(path.error());
+    LODESTONE_TRY(path);
     const Result<ByteSpan> file = external_file(loader, uri, UINT64_MAX, where);
     if (!file) {
       loader.warnings.push_back(fmt::format("image {} ('{}') could not be read: {}", i, uri, file.error().what));
@@ -194,13 +194,13 @@ Result<std::unique_ptr<Document::Data>> load_document(std::string bytes, std::st
   Loader loader{*data, path.parent_path(), !path.empty(), warnings, task, {}, {}, false};
   if (is_glb(text)) {
     const Result<GlbParts> parts = split_glb(text, data->name, warnings);
-    if (!parts) return fail(parts.error());
+    LODESTONE_TRY(parts);
     text = parts->json;
     loader.bin = parts->bin;
     loader.has_bin = parts->bin.data() != nullptr;
   }
   Result<Json> json = parse_json(text, data->name);
-  if (!json) return fail(json.error());
+  LODESTONE_TRY(json);
   data->json = std::move(*json);
   if (const auto good = check_asset(*data); !good) return fail(good.error());
   std::vector<std::size_t> emptied;

@@ -152,7 +152,7 @@ Result<std::vector<PrimitiveSource>> read_primitives(const Document::Data& data,
     if (!is_triangle_primitive(list[p])) continue;
     const std::string where = fmt::format("{}: mesh {} primitive {}", data.name, index, p);
     Result<PrimitiveSource> source = read_primitive(data, list[p], where, budget, cache, model.warnings);
-    if (!source) return fail(source.error());
+    LODESTONE_TRY(source);
     primitives.push_back(std::move(*source));
   }
   return primitives;
@@ -188,7 +188,7 @@ Result<Mesh> read_mesh(const Document::Data& data, std::size_t index, Budget& bu
                        const Task& task) {
   const Json& json = array_member(data.json, "meshes")[index];
   Result<std::vector<PrimitiveSource>> primitives = read_primitives(data, index, json, budget, cache, model, task);
-  if (!primitives) return fail(primitives.error());
+  LODESTONE_TRY(primitives);
 
   Mesh mesh;
   mesh.name = string_member(json, "name");

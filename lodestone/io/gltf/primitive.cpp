@@ -27,7 +27,7 @@ Result<Accessor> accessor_member(const Document::Data& data, const Json& object,
                                  const std::string& where, Budget& budget) {
   const std::size_t count = array_member(data.json, "accessors").size();
   const Result<std::size_t> index = index_member(object, key, count, "accessors", where);
-  if (!index) return fail(index.error());
+  LODESTONE_TRY(index);
   return find_accessor(data, *index, &budget);
 }
 
@@ -61,7 +61,7 @@ Result<NamedAccessors> read_named(const Document::Data& data, const Json& attrib
   for (const auto& [name, index] : attributes.items()) {
     if (std::find(skip.begin(), skip.end(), name) != skip.end()) continue;
     Result<Accessor> accessor = accessor_member(data, attributes, name, where, budget);
-    if (!accessor) return fail(accessor.error());
+    LODESTONE_TRY(accessor);
     const bool positions = name == "POSITION" && !morph;
     const auto [least, most] = positions ? std::pair<std::size_t, std::size_t>{3, 3} : components_allowed(name, morph);
     const bool custom = name.starts_with('_');
@@ -83,12 +83,12 @@ Result<NamedAccessors> read_named(const Document::Data& data, const Json& attrib
 Result<std::shared_ptr<const DracoMesh>> decode_view(const Document::Data& data, const Json& draco,
                                                      const std::string& where, Budget& budget, DracoCache& cache) {
   const Result<std::size_t> view = index_member(draco, "bufferView", data.views.size(), "buffer views", where);
-  if (!view) return fail(view.error());
+  LODESTONE_TRY(view);
   std::shared_ptr<const DracoMesh>& slot = cache.meshes[*view];
   if (slot == nullptr) {
     const ByteSpan bytes = data.views[*view].bytes;
     Result<DracoMesh> mesh = decode_draco({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, where);
-    if (!mesh) return fail(mesh.error());
+    LODESTONE_TRY(mesh);
     std::uint64_t unfolded = mesh->indices.size() * sizeof(std::uint32_t);
     for (const DracoAttribute& a : mesh->attributes) unfolded += a.values->size();
     if (!budget.take(unfolded)) return unfolds_too_far(data, "the Draco streams", where);
@@ -134,7 +134,7 @@ Result<NamedAccessors> read_draco_attributes(const Document::Data& data, const J
     const std::optional<std::uint64_t> id = as_uint(value);
     if (!id) return fail(ErrorCode::bad_format, fmt::format("Draco attribute {} is not a number", name), where);
     Result<Accessor> accessor = draco_accessor(data, mesh, *id, name, *attributes, where);
-    if (!accessor) return fail(accessor.error());
+    LODESTONE_TRY(accessor);
     const auto [least, most] =
         name == "POSITION" ? std::pair<std::size_t, std::size_t>{3, 3} : components_allowed(name, false);
     if (accessor->components < least || accessor->components > most) {
@@ -159,7 +159,7 @@ Result<std::vector<std::uint32_t>> read_indices(const Document::Data& data, cons
     return out;
   }
   const Result<Accessor> accessor = accessor_member(data, primitive, "indices", where, budget);
-  if (!accessor) return fail(accessor.error());
+  LODESTONE_TRY(accessor);
   if (accessor->components != 1 || accessor->normalized || accessor->type == ComponentType::float32 ||
       accessor->type == ComponentType::int8 || accessor->type == ComponentType::int16) {
     return fail(ErrorCode::bad_format, "is used for indices, but is not SCALAR of an unsigned type", accessor->where);
@@ -255,7 +255,7 @@ Result<void> read_targets(const Document::Data& data, const Json& primitive, con
                           PrimitiveSource& source, Budget& budget, std::vector<std::string>& warnings) {
   for (const Json& target : array_member(primitive, "targets")) {
     Result<NamedAccessors> list = read_named(data, target, true, where, {}, budget, warnings);
-    if (!list) return fail(list.error());
+    LODESTONE_TRY(list);
     source.targets.push_back(std::move(*list));
   }
   return {};
@@ -276,7 +276,7 @@ Result<PrimitiveSource> read_primitive(const Document::Data& data, const Json& p
   if (const Json* material = member(primitive, "material"); material != nullptr) {
     const std::size_t count = array_member(data.json, "materials").size();
     const Result<std::size_t> index = index_member(primitive, "material", count, "materials", where);
-    if (!index) return fail(index.error());
+    LODESTONE_TRY(index);
     out.material = static_cast<std::uint32_t>(*index);
   }
   const Json* attributes = member(primitive, "attributes");
@@ -287,14 +287,14 @@ Result<PrimitiveSource> read_primitive(const Document::Data& data, const Json& p
   std::shared_ptr<const DracoMesh> draco;
   if (const Json* extension = draco_extension(primitive); extension != nullptr) {
     Result<std::shared_ptr<const DracoMesh>> decoded = decode_view(data, *extension, where, budget, cache);
-    if (!decoded) return fail(decoded.error());
+    LODESTONE_TRY(decoded);
     draco = std::move(*decoded);
     Result<NamedAccessors> list = read_draco_attributes(data, primitive, *draco, where, done);
-    if (!list) return fail(list.error());
+    LODESTONE_TRY(list);
     out.attributes = std::move(*list);
   }
   Result<NamedAccessors> plain = read_named(data, *attributes, false, where, done, budget, warnings);
-  if (!plain) return fail(plain.error());
+  LODESTONE_TRY(plain);
   for (auto& entry : *plain) out.attributes.push_back(std::move(entry));
 
   const auto positions = std::find_if(out.attributes.begin(), out.attributes.end(),
@@ -313,7 +313,7 @@ Result<PrimitiveSource> read_primitive(const Document::Data& data, const Json& p
     indices = draco->indices;
   } else {
     Result<std::vector<std::uint32_t>> list = read_indices(data, primitive, out.positions.count, where, budget);
-    if (!list) return fail(list.error());
+    LODESTONE_TRY(list);
     indices = std::move(*list);
   }
   out.triangles = to_triangles(indices, draco != nullptr ? kTriangles : mode_of(primitive), where, warnings);

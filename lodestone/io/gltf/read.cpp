@@ -51,9 +51,9 @@ Result<void> read_meshes(const Document::Data& data, Model& model, Budget& budge
   for (std::size_t i = 0; i < count; ++i) {
     const Task part = task.part(1.0 / static_cast<double>(count));
     Result<Mesh> mesh = read_mesh(data, i, budget, cache, model, part);
-    if (!mesh) return fail(mesh.error());
+    LODESTONE_TRY(mesh);
     Result<Mesh> welded = weld_exact(std::move(*mesh), part);
-    if (!welded) return fail(welded.error());
+    LODESTONE_TRY(welded);
     if (const Result<void> ok = validate(*welded); !ok) {
       return fail(ErrorCode::bad_format, ok.error().what, place(data, "mesh", i), ok.error().remedy);
     }
@@ -69,13 +69,13 @@ Result<Model> read_document(std::string bytes, std::string name, const std::file
   model.uv_origin_top = true;
   Result<std::unique_ptr<Document::Data>> loaded =
       load_document(std::move(bytes), std::move(name), path, options, model.warnings, task.part(0.3));
-  if (!loaded) return fail(loaded.error());
+  LODESTONE_TRY(loaded);
   Document::Data& data = **loaded;
   model.files = data.files;
   warn_of_required(data, model.warnings);
   Budget budget = unfold_budget(data.file_bytes);
-  if (const Result<void> ok = read_meshes(data, model, budget, task.part(0.7)); !ok) return fail(ok.error());
-  if (const Result<void> ok = read_scene(data, model, budget, options.draw_level); !ok) return fail(ok.error());
+  LODESTONE_TRY(read_meshes(data, model, budget, task.part(0.7)));
+  LODESTONE_TRY(read_scene(data, model, budget, options.draw_level));
   if (model.instances.empty()) {
     return fail(ErrorCode::empty, "has no triangles: the scene draws no mesh", data.name, "is it the right file?");
   }
@@ -144,7 +144,7 @@ Result<Model> read_gltf_bytes(std::string bytes, std::string name, Task task) {
 Result<Model> read_gltf(const std::filesystem::path& path, const ReadOptions& options, Task task) {
   try {
     Result<std::string> bytes = read_file(path);
-    if (!bytes) return fail(bytes.error());
+    LODESTONE_TRY(bytes);
     return read_document(std::move(*bytes), path.string(), path, options, task);
   } catch (const std::bad_alloc&) {
     return no_memory(path.string());

@@ -14,7 +14,7 @@ namespace {
 Result<Mat4d> local_transform(const Json& node, const std::string& where) {
   Mat4d matrix;
   const Result<bool> has_matrix = numbers_member(node, "matrix", matrix.m, where);
-  if (!has_matrix) return fail(has_matrix.error());
+  LODESTONE_TRY(has_matrix);
   if (*has_matrix) return matrix;
   std::array<double, 3> t{0, 0, 0}, s{1, 1, 1};
   std::array<double, 4> r{0, 0, 0, 1};
@@ -47,9 +47,9 @@ Result<std::vector<Mat4d>> instancing(const Document::Data& data, const Json& no
     if (member(*attributes, part.name) == nullptr) continue;
     const Result<std::size_t> index =
         index_member(*attributes, part.name, array_member(data.json, "accessors").size(), "accessors", where);
-    if (!index) return fail(index.error());
+    LODESTONE_TRY(index);
     const Result<Accessor> accessor = find_accessor(data, *index, &budget);
-    if (!accessor) return fail(accessor.error());
+    LODESTONE_TRY(accessor);
     const bool fits = accessor->components == part.components && (count == 0 || accessor->count == count);
     if (!fits) return fail(ErrorCode::bad_format, "its instances have attributes that do not fit together", where);
     count = accessor->count;
@@ -85,7 +85,7 @@ class SceneWalk {
     while (!stack_.empty()) {
       const Visit visit = stack_.back();
       stack_.pop_back();
-      if (const Result<void> ok = enter(visit.node, visit.parent); !ok) return ok;
+      LODESTONE_TRY(enter(visit.node, visit.parent));
     }
     return {};
   }
@@ -105,13 +105,13 @@ class SceneWalk {
     seen_[index] = true;
     const Json& node = level_of(nodes_[index]);
     const Result<Mat4d> local = local_transform(node, where);
-    if (!local) return fail(local.error());
+    LODESTONE_TRY(local);
     const Mat4d world = parent * *local;
     if (member(node, "mesh") != nullptr) {
       const Result<std::size_t> mesh = index_member(node, "mesh", model_.meshes.size(), "meshes", where);
-      if (!mesh) return fail(mesh.error());
+      LODESTONE_TRY(mesh);
       const Result<std::vector<Mat4d>> placings = instancing(data_, node, where, budget_);
-      if (!placings) return fail(placings.error());
+      LODESTONE_TRY(placings);
       if (!model_.meshes[*mesh].triangles.empty()) {
         const std::string name = string_member(nodes_[index], "name");
         const std::uint64_t each = sizeof(Instance) + name.size();
@@ -165,7 +165,7 @@ Result<std::vector<std::size_t>> find_roots(const Document::Data& data) {
   std::vector<std::size_t> roots;
   if (!scenes.empty()) {
     Result<std::uint64_t> scene = uint_member(data.json, "scene", 0, data.name);
-    if (!scene) return fail(scene.error());
+    LODESTONE_TRY(scene);
     if (*scene >= scenes.size()) {
       return fail(ErrorCode::bad_format, fmt::format("the default scene is {}, there are {}", *scene, scenes.size()),
                   data.name);
@@ -200,7 +200,7 @@ Result<std::vector<std::size_t>> find_roots(const Document::Data& data) {
 
 Result<void> read_scene(Document::Data& data, Model& model, Budget& budget, std::size_t draw_level) {
   const Result<std::vector<std::size_t>> roots = find_roots(data);
-  if (!roots) return fail(roots.error());
+  LODESTONE_TRY(roots);
   return SceneWalk(data, model, budget, draw_level).walk(*roots);
 }
 

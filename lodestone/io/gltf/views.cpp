@@ -46,11 +46,11 @@ ByteSpan as_bytes_of(std::string_view text) { return std::as_bytes(std::span(tex
 // A range of a buffer as a bufferView or its meshopt extension names it.
 Result<ByteSpan> buffer_range(const Document::Data& data, const Json& range, const std::string& where) {
   const Result<std::size_t> buffer = index_member(range, "buffer", data.buffers.size(), "buffers", where);
-  if (!buffer) return fail(buffer.error());
+  LODESTONE_TRY(buffer);
   const Result<std::uint64_t> offset = uint_member(range, "byteOffset", 0, where);
-  if (!offset) return fail(offset.error());
+  LODESTONE_TRY(offset);
   const Result<std::uint64_t> length = uint_member(range, "byteLength", 0, where);
-  if (!length) return fail(length.error());
+  LODESTONE_TRY(length);
   const ByteSpan bytes = data.buffers[*buffer];
   if (bytes.data() == nullptr) {
     return fail(ErrorCode::bad_format, "has no uri, and no binary chunk stands for it", place(data, "buffer", *buffer),
@@ -68,9 +68,9 @@ Result<ByteSpan> buffer_range(const Document::Data& data, const Json& range, con
 Result<MeshoptCoding> read_coding(const Json& meshopt, const std::string& where) {
   MeshoptCoding out;
   const Result<std::uint64_t> count = uint_member(meshopt, "count", 0, where);
-  if (!count) return fail(count.error());
+  LODESTONE_TRY(count);
   const Result<std::uint64_t> stride = uint_member(meshopt, "byteStride", 0, where);
-  if (!stride) return fail(stride.error());
+  LODESTONE_TRY(stride);
   out.count = static_cast<std::size_t>(*count);
   out.stride = static_cast<std::size_t>(*stride);
   const std::string mode = string_member(meshopt, "mode"), filter = string_member(meshopt, "filter");
@@ -104,13 +104,13 @@ Result<MeshoptCoding> read_coding(const Json& meshopt, const std::string& where)
 Result<View> decode_view(Document::Data& data, const Json& meshopt, std::size_t stride, Budget& budget,
                          const std::string& where) {
   const Result<ByteSpan> range = buffer_range(data, meshopt, where);
-  if (!range) return fail(range.error());
+  LODESTONE_TRY(range);
   const Result<MeshoptCoding> coding = read_coding(meshopt, where);
-  if (!coding) return fail(coding.error());
-  if (const Result<void> ok = check_meshopt(*coding, range->size(), where); !ok) return fail(ok.error());
+  LODESTONE_TRY(coding);
+  LODESTONE_TRY(check_meshopt(*coding, range->size(), where));
   if (!budget.take(coding->count * coding->stride)) return unfolds_too_far(data, "the compressed views", where);
   Result<std::string> bytes = decode_meshopt(*range, *coding, where);
-  if (!bytes) return fail(bytes.error());
+  LODESTONE_TRY(bytes);
   data.storage.push_back(std::make_shared<const std::string>(std::move(*bytes)));
   View view;
   view.bytes = as_bytes_of(*data.storage.back());
@@ -121,18 +121,18 @@ Result<View> decode_view(Document::Data& data, const Json& meshopt, std::size_t 
 Result<View> load_view(Document::Data& data, const Json& json, std::size_t index, Budget& budget) {
   const std::string where = place(data, "bufferView", index);
   const Result<std::uint64_t> stride = uint_member(json, "byteStride", 0, where);
-  if (!stride) return fail(stride.error());
+  LODESTONE_TRY(stride);
   if (*stride > 65536) return fail(ErrorCode::bad_format, fmt::format("byteStride is {}, at most 252", *stride), where);
   if (const Json* meshopt = meshopt_of(json); meshopt != nullptr) {
     const Result<std::size_t> buffer = index_member(json, "buffer", data.buffers.size(), "buffers", where);
-    if (!buffer) return fail(buffer.error());
+    LODESTONE_TRY(buffer);
     const bool has_fallback = !data.buffers[*buffer].empty();
     if (has_meshopt() || !has_fallback) {
       return decode_view(data, *meshopt, static_cast<std::size_t>(*stride), budget, where);
     }
   }
   const Result<ByteSpan> bytes = buffer_range(data, json, where);
-  if (!bytes) return fail(bytes.error());
+  LODESTONE_TRY(bytes);
   return View{*bytes, static_cast<std::size_t>(*stride)};
 }
 
@@ -145,7 +145,7 @@ Result<void> load_views(Document::Data& data, const Task& task) {
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (task.cancelled()) return cancelled_error("reading");
     Result<View> view = load_view(data, views[i], i, budget);
-    if (!view) return fail(view.error());
+    LODESTONE_TRY(view);
     data.views.push_back(std::move(*view));
   }
   return {};

@@ -302,7 +302,7 @@ Result<void> write_levels(Writer& w, const Task& task) {
   std::vector<std::vector<std::size_t>> meshes;  // level - 1, mesh
   for (std::size_t level = 1; level < levels; ++level) {
     Result<std::vector<std::size_t>> one = write_level_meshes(w, level, task);
-    if (!one) return fail(one.error());
+    LODESTONE_TRY(one);
     meshes.push_back(std::move(*one));
     task.advance(1.0 / static_cast<double>(levels));
   }
@@ -351,7 +351,7 @@ Result<void> write_glb(Writer& w, const std::filesystem::path& path, const std::
                 path.string(), "write .gltf, or fewer or smaller levels");
   }
   Result<OutputFile> file = OutputFile::create(path);
-  if (!file) return fail(file.error());
+  LODESTONE_TRY(file);
   std::string head = "glTF";
   put_u32(head, 2);
   put_u32(head, total);
@@ -378,7 +378,7 @@ Result<void> write_gltf_and_bin(Writer& w, const std::filesystem::path& path, co
   w.report.total_bytes = text.size() + bin.size();
   const auto put = [](const std::filesystem::path& to, const std::string& bytes) -> Result<void> {
     Result<OutputFile> file = OutputFile::create(to);
-    if (!file) return fail(file.error());
+    LODESTONE_TRY(file);
     file->write(bytes);
     return file->commit();
   };
@@ -388,7 +388,7 @@ Result<void> write_gltf_and_bin(Writer& w, const std::filesystem::path& path, co
     return fail(ErrorCode::cannot_write, "a folder of this name or of its .bin is in the way", path.string());
   }
   Result<StagingFolder> staging = StagingFolder::create(path);
-  if (!staging) return fail(staging.error());
+  LODESTONE_TRY(staging);
   if (const Result<void> ok = put(staging->path() / bin_path.filename(), bin); !ok) {
     return fail(ok.error().code, ok.error().what, bin_path.string(), ok.error().remedy);
   }
@@ -408,7 +408,7 @@ void report_levels(Writer& w, const std::filesystem::path& path) {
 
 Result<WriteReport> write(const Model& original, std::span<const Level> levels, const std::filesystem::path& path,
                           const WriteOptions& options, const Task& task) {
-  if (const Result<void> ok = check(original, levels, path, options.compression); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(original, levels, path, options.compression));
   const Document* document = original.document.get();
   Writer w{original, levels, options, document != nullptr ? &document->data() : nullptr, {}, {}, {}, {}, {}, {}};
   if (w.document != nullptr) {
@@ -416,16 +416,15 @@ Result<WriteReport> write(const Model& original, std::span<const Level> levels, 
   } else {
     begin_fresh(w);
   }
-  if (const Result<void> ok = write_original_meshes(w, task); !ok) return fail(ok.error());
-  if (const Result<void> ok = write_levels(w, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(write_original_meshes(w, task));
+  LODESTONE_TRY(write_levels(w, task));
   list_draco(w.json);
   if (w.document != nullptr) list_quantization(w.json);
   const std::string bin = w.pack->finish();
   if (bin.empty()) w.json.erase("buffers");
   if (task.cancelled()) return cancelled_error("writing");
   const bool text = extension_of(path) == ".gltf";
-  const Result<void> ok = text ? write_gltf_and_bin(w, path, bin) : write_glb(w, path, bin);
-  if (!ok) return fail(ok.error());
+  LODESTONE_TRY(text ? write_gltf_and_bin(w, path, bin) : write_glb(w, path, bin));
   report_levels(w, path);
   return std::move(w.report);
 }
@@ -447,13 +446,13 @@ Result<WriteReport> guarded_write(const Model& original, std::span<const Level> 
 
 Result<WriteReport> write_gltf(const Ladder& ladder, const std::filesystem::path& path, const WriteOptions& options,
                                Task task) {
-  if (const Result<void> ok = validate(ladder, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(ladder, task));
   return guarded_write(ladder.original, ladder.levels, path, options, task);
 }
 
 Result<WriteReport> write_gltf(const Model& model, const std::filesystem::path& path, const WriteOptions& options,
                                Task task) {
-  if (const Result<void> ok = validate(model, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(validate(model, task));
   const Level alone;
   return guarded_write(model, std::span(&alone, 1), path, options, task);
 }

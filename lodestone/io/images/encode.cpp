@@ -47,22 +47,22 @@ Result<std::uint64_t> write_picture(const Pixels& pixels, const std::filesystem:
     return fail(ErrorCode::bad_argument, fmt::format("'{}' is no format of pictures that we write", extension),
                 path.string(), "end it in .png or .webp");
   }
-  if (const Result<void> ok = check(pixels); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(pixels));
   const Result<std::string> encoded =
       extension == ".png" ? encode_png(pixels, path.string()) : encode_webp(pixels, path.string());
-  if (!encoded) return fail(encoded.error());
+  LODESTONE_TRY(encoded);
   Result<OutputFile> file = OutputFile::create(path);
-  if (!file) return fail(file.error());
+  LODESTONE_TRY(file);
   file->write(std::string_view(*encoded));
   const std::uint64_t bytes = file->size();
-  if (const Result<void> done = file->commit(); !done) return fail(done.error());
+  LODESTONE_TRY(file->commit());
   return bytes;
 }
 
 Result<std::shared_ptr<const Image>> png_image(const Pixels& pixels, std::string name) {
-  if (const Result<void> ok = check(pixels); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(pixels));
   const Result<std::string> encoded = encode_png(pixels, name);
-  if (!encoded) return fail(encoded.error());
+  LODESTONE_TRY(encoded);
   auto image = std::make_shared<Image>();
   image->name = name + ".png";
   image->mime = "image/png";

@@ -26,7 +26,7 @@ class ObjReader {
       : bytes_(std::move(bytes)), materials_(folder), task_(std::move(task)) {}
 
   Result<Model> read() {
-    if (Result<void> text = check_encoding(); !text) return fail(text.error());
+    LODESTONE_TRY(check_encoding());
     {
       ReadProgress progress(task_.part(kReadingShare), bytes_.size());
       Result<void> done = read_lines(Pass::all, progress);
@@ -38,9 +38,9 @@ class ObjReader {
         done = read_lines(Pass::vertices, progress);
         if (done) done = read_lines(Pass::faces, progress);
       }
-      if (!done) return fail(done.error());
+      LODESTONE_TRY(done);
     }
-    if (const Result<void> status = bytes_.status(); !status) return fail(status.error());
+    LODESTONE_TRY(bytes_.status());
     return finish_model(assemble(), bytes_.name(), 1, task_.part(1 - kReadingShare));
   }
 
@@ -79,7 +79,7 @@ class ObjReader {
         }
         line = joined;
       }
-      if (Result<void> done = take_line(line); !done) return done;
+      LODESTONE_TRY(take_line(line));
       if (i % 8192 == 0 && !progress.go_on(bytes_.position())) return cancelled_error("reading");
     }
     return {};
@@ -187,7 +187,7 @@ class ObjReader {
 
 Result<Model> read_obj(const std::filesystem::path& path, Task task) {
   Result<ByteReader> bytes = ByteReader::open(path);
-  if (!bytes) return fail(bytes.error());
+  LODESTONE_TRY(bytes);
   const std::filesystem::path folder = path.parent_path();
   return ObjReader(std::move(*bytes), &folder, std::move(task)).read();
 }

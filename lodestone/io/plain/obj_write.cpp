@@ -268,12 +268,12 @@ Result<void> write_materials(const ObjNames& names, const std::filesystem::path&
   const std::vector<TextureFile> textures = texture_files(names.materials, path, true);
   Result<OutputFile> mtl =
       OutputFile::create(std::filesystem::path(path).replace_filename(path.stem().string() + ".mtl"));
-  if (!mtl) return fail(mtl.error());
+  LODESTONE_TRY(mtl);
   mtl->write(mtl_text(names.materials, names.material_words, textures));
   files.push_back(std::move(*mtl));
   for (const TextureFile& texture : textures) {
     Result<OutputFile> image = write_texture(texture, path);
-    if (!image) return fail(image.error());
+    LODESTONE_TRY(image);
     files.push_back(std::move(*image));
   }
   return {};
@@ -282,7 +282,7 @@ Result<void> write_materials(const ObjNames& names, const std::filesystem::path&
 }  // namespace
 
 Result<WriteReport> write_obj(const Model& model, const std::filesystem::path& path, Task task) {
-  if (const Result<void> ok = check_drawn(model, path, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_drawn(model, path, task));
   std::vector<std::string> warnings;
   const Mesh mesh = flatten_to_mesh(model, warnings);
   warn_of_left_out(mesh, warnings);
@@ -292,18 +292,18 @@ Result<WriteReport> write_obj(const Model& model, const std::filesystem::path& p
 
   std::vector<OutputFile> files;
   Result<OutputFile> obj = OutputFile::create(path);
-  if (!obj) return fail(obj.error());
+  LODESTONE_TRY(obj);
   obj->write("# made by Lodestone\n");
   if (!names.materials.empty()) {
     obj->write(fmt::format("mtllib {}.mtl\n", path.stem().string()));
-    if (const Result<void> ok = write_materials(names, path, files); !ok) return fail(ok.error());
+    LODESTONE_TRY(write_materials(names, path, files));
   }
   ObjText(model, mesh, *obj, task).write(names);
   if (task.cancelled()) return cancelled_error("writing");
   files.push_back(std::move(*obj));
   WriteReport report = single_file_report(path, 0, std::move(warnings));
   for (OutputFile& file : files) {
-    if (const Result<void> ok = file.commit(); !ok) return fail(ok.error());
+    LODESTONE_TRY(file.commit());
     report.total_bytes += file.size();
   }
   report.level_bytes = {report.total_bytes};

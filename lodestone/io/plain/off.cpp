@@ -28,9 +28,9 @@ class OffReader {
       Result<void> done = read_header();
       if (done) done = read_vertices(progress);
       if (done) done = read_faces(progress);
-      if (!done) return fail(done.error());
+      LODESTONE_TRY(done);
     }
-    if (const Result<void> status = bytes_.status(); !status) return fail(status.error());
+    LODESTONE_TRY(bytes_.status());
     return finish_model(std::move(model_), bytes_.name(), 0, task_.part(1 - kReadingShare));
   }
 
@@ -234,7 +234,7 @@ class OffReader {
 
 Result<Model> read_off(const std::filesystem::path& path, Task task) {
   Result<ByteReader> bytes = ByteReader::open(path);
-  if (!bytes) return fail(bytes.error());
+  LODESTONE_TRY(bytes);
   return OffReader(std::move(*bytes), std::move(task)).read();
 }
 

@@ -9,12 +9,12 @@
 namespace lodestone::io {
 
 Result<WriteReport> write_off(const Model& model, const std::filesystem::path& path, Task task) {
-  if (const Result<void> ok = check_drawn(model, path, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_drawn(model, path, task));
   std::vector<std::string> warnings;
   const Mesh mesh = flatten_to_mesh(model, warnings);
   warn_of_losses(mesh, "OFF", warnings);
   Result<OutputFile> file = OutputFile::create(path);
-  if (!file) return fail(file.error());
+  LODESTONE_TRY(file);
   file->write(fmt::format("OFF\n{} {} 0\n", mesh.vertex_count(), mesh.triangles.size()));
   std::string line;
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
@@ -36,7 +36,7 @@ Result<WriteReport> write_off(const Model& model, const std::filesystem::path& p
     file->write(fmt::format("3 {} {} {}\n", v[0], v[1], v[2]));
   }
   if (task.cancelled()) return cancelled_error("writing");
-  if (const Result<void> ok = file->commit(); !ok) return fail(ok.error());
+  LODESTONE_TRY(file->commit());
   return single_file_report(path, file->size(), std::move(warnings));
 }
 

@@ -91,13 +91,13 @@ void add_textures(const PlyHeader& header, const std::filesystem::path* folder, 
 
 Result<Model> read(ByteReader bytes, const std::filesystem::path* folder, Task task) {
   Result<PlyHeader> header = read_ply_header(bytes);
-  if (!header) return fail(header.error());
+  LODESTONE_TRY(header);
   Model model = make_model(Mesh{});
   {
     ReadProgress progress(task.part(kReadingShare), bytes.size());
-    if (Result<void> done = read_elements(bytes, *header, model, progress); !done) return fail(done.error());
+    LODESTONE_TRY(read_elements(bytes, *header, model, progress));
   }
-  if (const Result<void> status = bytes.status(); !status) return fail(status.error());
+  LODESTONE_TRY(bytes.status());
   model.file_vertices = model.meshes[0].positions.size();
   add_textures(*header, folder, model);
   return finish_model(std::move(model), bytes.name(), 0, task.part(1 - kReadingShare));
@@ -107,7 +107,7 @@ Result<Model> read(ByteReader bytes, const std::filesystem::path* folder, Task t
 
 Result<Model> read_ply(const std::filesystem::path& path, Task task) {
   Result<ByteReader> bytes = ByteReader::open(path);
-  if (!bytes) return fail(bytes.error());
+  LODESTONE_TRY(bytes);
   const std::filesystem::path folder = path.parent_path();
   return read(std::move(*bytes), &folder, std::move(task));
 }

@@ -68,9 +68,8 @@ class FaceReader {
         const PlyProperty& p = element_.properties[i];
         if (static_cast<int>(i) != corners_at_) {
           if (!values_.skip(p)) return cut_off();
-        } else if (Result<void> done = read_strip(p); !done) {
-          return done;
-        }
+        } else
+          LODESTONE_TRY(read_strip(p));
       }
     }
     return {};
@@ -117,7 +116,7 @@ class FaceReader {
       const std::uint64_t taken = values_.is_swapped() ? take_triangles<true>() : take_triangles<false>();
       face_ += taken;
       if (face_ < element_.count) {  // something else than a good triangle: the careful way
-        if (Result<void> one = read_one(); !one) return one;
+        LODESTONE_TRY(read_one());
         ++face_;
       }
       if (!progress_.go_on(values_.bytes().position())) return cancelled_error("reading");
@@ -154,7 +153,7 @@ class FaceReader {
 
   Result<void> read_all_one_by_one() {
     for (face_ = 0; face_ < element_.count; ++face_) {
-      if (Result<void> one = read_one(); !one) return one;
+      LODESTONE_TRY(read_one());
       if (face_ % 4096 == 0 && !progress_.go_on(values_.bytes().position())) return cancelled_error("reading");
     }
     return {};
@@ -166,7 +165,7 @@ class FaceReader {
     for (std::size_t i = 0; i < element_.properties.size(); ++i) {
       const PlyProperty& p = element_.properties[i];
       if (static_cast<int>(i) == corners_at_) {
-        if (Result<void> read = read_corners(p); !read) return read;
+        LODESTONE_TRY(read_corners(p));
       } else if (static_cast<int>(i) == texcoord_at_) {
         std::uint64_t count = 0;
         if (!values_.next_count(p, count)) return cut_off();

@@ -124,12 +124,12 @@ class HeaderParser {
       } else if (!key.empty() && key != "obj_info") {
         return bad(fmt::format("'{}' is not a keyword of a PLY header", shown(key)), "is the file damaged?");
       }
-      if (!done) return fail(done.error());
+      LODESTONE_TRY(done);
     }
     if (!has_format) return bad("the header has no line 'format'");
     header_.data_begin = bytes_.position();
     header_.lines = lines_.number;
-    if (Result<void> checked = check_counts(); !checked) return fail(checked.error());
+    LODESTONE_TRY(check_counts());
     return std::move(header_);
   }
 

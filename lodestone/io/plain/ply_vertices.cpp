@@ -169,7 +169,7 @@ class VertexReader {
       : values_(values), element_(element), model_(model), mesh_(model.meshes[0]), progress_(progress) {}
 
   Result<void> read() {
-    if (Result<void> planned = plan(); !planned) return planned;
+    LODESTONE_TRY(plan());
     Result<void> done;
     if (values_.is_text() || element_.has_lists()) {
       done = read_one_by_one();
@@ -204,7 +204,7 @@ class VertexReader {
       }
     }
     record_bytes_ = offset;
-    if (Result<void> found = plan_positions(count, place); !found) return found;
+    LODESTONE_TRY(plan_positions(count, place));
     for (const PlyStream& s : ply_streams(element_)) {
       AttributeStream stream =
           make_stream(s.name, s.semantic, static_cast<std::uint32_t>(s.properties.size()), s.type, s.normalized, count);

@@ -216,27 +216,27 @@ void write_faces(const Mesh& mesh, OutputFile& file, const Task& task) {
 }  // namespace
 
 Result<WriteReport> write_ply(const Model& model, const std::filesystem::path& path, Task task) {
-  if (const Result<void> ok = check_drawn(model, path, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_drawn(model, path, task));
   std::vector<std::string> warnings;
   const Mesh mesh = flatten_to_mesh(model, warnings);
   const std::optional<TextureFile> texture = find_texture(model, mesh, path, warnings);
   std::optional<OutputFile> image;
   if (texture) {
     Result<OutputFile> created = write_texture(*texture, path);
-    if (!created) return fail(created.error());
+    LODESTONE_TRY(created);
     image = std::move(*created);
   }
   Result<OutputFile> file = OutputFile::create(path);
-  if (!file) return fail(file.error());
+  LODESTONE_TRY(file);
   const std::vector<Columns> columns = plan_columns(mesh, model.uv_origin_top);
   file->write(header_of(mesh, columns, texture ? texture->name : ""));
   write_vertices(mesh, columns, *file, task);
   write_faces(mesh, *file, task);
   if (task.cancelled()) return cancelled_error("writing");
   if (image) {
-    if (const Result<void> ok = image->commit(); !ok) return fail(ok.error());
+    LODESTONE_TRY(image->commit());
   }
-  if (const Result<void> ok = file->commit(); !ok) return fail(ok.error());
+  LODESTONE_TRY(file->commit());
   return single_file_report(path, file->size() + (image ? image->size() : 0), std::move(warnings));
 }
 

@@ -24,12 +24,12 @@ class StlReader {
 
   Result<Model> read() {
     Result<bool> binary = is_binary();
-    if (!binary) return fail(binary.error());
+    LODESTONE_TRY(binary);
     {
       ReadProgress progress(task_.part(kReadingShare), bytes_.size());
-      if (Result<void> done = *binary ? read_binary(progress) : read_text(progress); !done) return fail(done.error());
+      LODESTONE_TRY(*binary ? read_binary(progress) : read_text(progress));
     }
-    if (const Result<void> status = bytes_.status(); !status) return fail(status.error());
+    LODESTONE_TRY(bytes_.status());
     mesh_.positions = std::move(table_.positions);
     table_ = {};
     model_.file_vertices = 3 * model_.file_triangles;
@@ -173,7 +173,7 @@ class StlReader {
 
 Result<Model> read_stl(const std::filesystem::path& path, Task task) {
   Result<ByteReader> bytes = ByteReader::open(path);
-  if (!bytes) return fail(bytes.error());
+  LODESTONE_TRY(bytes);
   return StlReader(std::move(*bytes), std::move(task)).read();
 }
 

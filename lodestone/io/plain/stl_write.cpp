@@ -10,13 +10,13 @@
 namespace lodestone::io {
 
 Result<WriteReport> write_stl(const Model& model, const std::filesystem::path& path, Task task) {
-  if (const Result<void> ok = check_drawn(model, path, task); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_drawn(model, path, task));
   std::vector<std::string> warnings;
   const Mesh mesh = flatten_to_mesh(model, warnings);
   warn_of_losses(mesh, "STL", warnings);
   if (mesh.offset != Vec3d{}) warnings.emplace_back("STL holds floats: coordinates far from the origin lose precision");
   Result<OutputFile> file = OutputFile::create(path);
-  if (!file) return fail(file.error());
+  LODESTONE_TRY(file);
   std::string head(80, ' ');
   std::memcpy(head.data(), "Lodestone", 9);
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
@@ -34,7 +34,7 @@ Result<WriteReport> write_stl(const Model& model, const std::filesystem::path& p
     file->write(record);
   }
   if (task.cancelled()) return cancelled_error("writing");
-  if (const Result<void> ok = file->commit(); !ok) return fail(ok.error());
+  LODESTONE_TRY(file->commit());
   return single_file_report(path, file->size(), std::move(warnings));
 }
 

@@ -36,9 +36,9 @@ class LasReader {
   LasReader(ByteReader bytes, const Task& task) : bytes_(std::move(bytes)), progress_(task, bytes_.size()) {}
 
   Result<PointCloud> read() {
-    if (Result<void> done = read_header(); !done) return fail(done.error());
-    if (Result<void> done = read_records(); !done) return fail(done.error());
-    if (const Result<void> status = bytes_.status(); !status) return fail(status.error());
+    LODESTONE_TRY(read_header());
+    LODESTONE_TRY(read_records());
+    LODESTONE_TRY(bytes_.status());
     raw_.colors = bytes_of(colors_);
     return finish_points(std::move(raw_), bytes_.name());
   }

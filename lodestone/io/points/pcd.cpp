@@ -58,14 +58,13 @@ class PcdReader {
 
   Result<PointCloud> read() {
     Result<PcdHeader> header = read_pcd_header(bytes_);
-    if (!header) return fail(header.error());
+    LODESTONE_TRY(header);
     header_ = std::move(*header);
     plan();
-    Result<void> done = header_.data == PcdData::ascii    ? read_ascii()
-                        : header_.data == PcdData::binary ? read_binary()
-                                                          : read_compressed();
-    if (!done) return fail(done.error());
-    if (const Result<void> status = bytes_.status(); !status) return fail(status.error());
+    LODESTONE_TRY(header_.data == PcdData::ascii    ? read_ascii()
+                  : header_.data == PcdData::binary ? read_binary()
+                                                    : read_compressed());
+    LODESTONE_TRY(bytes_.status());
     finish_colors();
     return finish_points(std::move(raw_), bytes_.name());
   }
@@ -118,7 +117,7 @@ class PcdReader {
 
   Result<void> read_ascii() {
     // A digit and a blank for each number; the last may end with the file.
-    if (Result<void> ok = reserve(2 * header_.numbers, bytes_.remaining() + 1); !ok) return ok;
+    LODESTONE_TRY(reserve(2 * header_.numbers, bytes_.remaining() + 1));
     TextReader text(bytes_, 0, header_.lines + 1);
     for (std::uint64_t i = 0; i < header_.points; ++i) {
       Row row;
@@ -149,7 +148,7 @@ class PcdReader {
   }
 
   Result<void> read_binary() {
-    if (Result<void> ok = reserve(header_.record_bytes, bytes_.remaining()); !ok) return ok;
+    LODESTONE_TRY(reserve(header_.record_bytes, bytes_.remaining()));
     for (std::uint64_t i = 0; i < header_.points; ++i) {
       if (!bytes_.ensure(static_cast<std::size_t>(header_.record_bytes))) return cut_off(i);
       Row row;
@@ -176,7 +175,7 @@ class PcdReader {
                       size_text(static_cast<double>(packed)), size_text(static_cast<double>(bytes_.remaining()))),
           place, "is it cut off?");
     }
-    if (Result<void> ok = reserve(header_.record_bytes, plain); !ok) return ok;
+    LODESTONE_TRY(reserve(header_.record_bytes, plain));
     if (plain != header_.points * header_.record_bytes) {
       return fail(ErrorCode::bad_format,
                   fmt::format("{} points of {} are {}, the file says {}", header_.points,

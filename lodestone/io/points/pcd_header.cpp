@@ -51,10 +51,10 @@ class HeaderParser {
       std::string_view rest = trimmed(line);
       if (rest.empty() || rest.front() == '#') continue;
       const std::string_view key = next_word(rest);
-      if (Result<void> done = take(key, rest); !done) return fail(done.error());
+      LODESTONE_TRY(take(key, rest));
     }
     header_.lines = text_.line();
-    if (Result<void> done = finish(); !done) return fail(done.error());
+    LODESTONE_TRY(finish());
     return std::move(header_);
   }
 

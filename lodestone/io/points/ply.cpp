@@ -73,7 +73,7 @@ bool ply_names_only_points(std::string_view head) {
 
 Result<PointCloud> read_ply_points(ByteReader bytes, const Task& task) {
   Result<PlyHeader> header = read_ply_header(bytes);
-  if (!header) return fail(header.error());
+  LODESTONE_TRY(header);
   const PlyElement* vertices = header->find("vertex");
   if (vertices == nullptr) {
     return fail(ErrorCode::empty, "has no points: there is no 'element vertex'", bytes.name(), "is it a point cloud?");
@@ -85,9 +85,7 @@ Result<PointCloud> read_ply_points(ByteReader bytes, const Task& task) {
   RawPoints raw;
   for (const PlyElement& element : header->elements) {
     if (&element == vertices) {
-      if (const Result<void> done = read_ply_vertices(values, element, model, progress); !done) {
-        return fail(done.error());
-      }
+      LODESTONE_TRY(read_ply_vertices(values, element, model, progress));
       continue;
     }
     if (element.count > 0) raw.warnings.push_back(fmt::format("element '{}' was left out", element.name));
@@ -99,7 +97,7 @@ Result<PointCloud> read_ply_points(ByteReader bytes, const Task& task) {
       if (i % 4096 == 0 && !progress.go_on(bytes.position())) return cancelled_error("reading");
     }
   }
-  if (const Result<void> status = bytes.status(); !status) return fail(status.error());
+  LODESTONE_TRY(bytes.status());
   const Mesh& mesh = model.meshes[0];
   raw.warnings.insert(raw.warnings.end(), model.warnings.begin(), model.warnings.end());
   raw.positions.resize(mesh.positions.size());

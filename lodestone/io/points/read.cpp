@@ -134,7 +134,7 @@ Result<PointCloud> finish_points(RawPoints raw, std::string_view name) {
 
 Result<PointCloud> read_points(const std::filesystem::path& path, const Task& task) {
   Result<ByteReader> bytes = ByteReader::open(path);
-  if (!bytes) return fail(bytes.error());
+  LODESTONE_TRY(bytes);
   Result<PointCloud> cloud = read(std::move(*bytes), extension_of(path), task);
   if (!cloud && cloud.error().where.empty()) cloud.error().where = path.string();
   return cloud;

@@ -68,10 +68,10 @@ class TextPoints {
     while (text_.next_line(line)) {
       line = trimmed(line);
       if (line.empty() || is_comment(line)) continue;
-      if (Result<void> done = columns_ == 0 ? first_line(line) : take(line); !done) return fail(done.error());
+      LODESTONE_TRY(columns_ == 0 ? first_line(line) : take(line));
       if (raw_.positions.size() % 4096 == 0 && !progress_.go_on(bytes_.position())) return cancelled_error("reading");
     }
-    if (const Result<void> status = bytes_.status(); !status) return fail(status.error());
+    LODESTONE_TRY(bytes_.status());
     take_extras();
     return finish_points(std::move(raw_), bytes_.name());
   }

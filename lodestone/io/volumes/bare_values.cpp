@@ -115,12 +115,12 @@ Result<void> send_bare_values(const fs::path& path, const VolumeHeader& header, 
                   path.string(), "is it cut off?");
     }
     if (z == 0) {
-      if (const Result<void> begun = sink.begin(header, type_of(values)); !begun) return begun;
+      LODESTONE_TRY(sink.begin(header, type_of(values)));
     }
     const bool little = std::endian::native == std::endian::little;
     if (each > 1 && values.big_endian == little) swap_bytes(raw, each);
     convert(raw, values, out);
-    if (const Result<void> sent = sink.slice(out); !sent) return sent;
+    LODESTONE_TRY(sink.slice(out));
     task.advance(1.0 / size[2]);
   }
   std::byte more;

@@ -108,7 +108,7 @@ template <class T, unsigned N>
 Result<void> send_image(const IoPointer& io, const fs::path& path, const VolumeHeader& header, VoxelType type,
                         const VolumeSink& sink, const Task& task) {
   const auto image = read_image<T, N>(io, path);
-  if (const Result<void> begun = sink.begin(header, type); !begun) return begun;
+  LODESTONE_TRY(sink.begin(header, type));
   const auto& size = header.grid.size;
   const std::size_t slice = std::size_t{size[0]} * size[1];
   const T* values = image->GetBufferPointer();
@@ -166,7 +166,7 @@ Result<void> check_sides(const fs::path& path, const itk::ImageIOBase& io) {
 }
 
 Result<VolumeHeader> header_of(const fs::path& path, const itk::ImageIOBase& io) {
-  if (const Result<void> ok = check_sides(path, io); !ok) return fail(ok.error());
+  LODESTONE_TRY(check_sides(path, io));
   VolumeHeader header;
   Vec3d spacing, axes[3], origin;
   for (unsigned k = 0; k < 3; ++k) {
@@ -253,7 +253,7 @@ Result<SeriesFiles> list_slices(const std::vector<fs::path>& files, const Task& 
       out.types.push_back(type_for(component_name(io->GetComponentType())));
       return {};
     });
-    if (!listed) return fail(listed.error());
+    LODESTONE_TRY(listed);
   }
   return out;
 }
@@ -307,7 +307,7 @@ Result<void> read_itk_file(const fs::path& path, const VolumeSink& sink, const T
     const IoPointer io = reader_for(path);
     if (io == nullptr) return fail(ErrorCode::bad_format, "is no volume of a format that we read", path.string());
     const Result<VolumeHeader> header = header_of(path, *io);
-    if (!header) return fail(header.error());
+    LODESTONE_TRY(header);
     switch (io->GetNumberOfDimensions()) {
       case 3:
         return send<3>(io, path, *header, sink, task);
@@ -327,7 +327,7 @@ Result<void> read_itk_series(const fs::path& folder, const std::vector<fs::path>
   itk::Object::SetGlobalWarningDisplay(false);
   const PlainNumbers plain;
   const Result<SeriesFiles> all = list_slices(files, task);
-  if (!all) return fail(all.error());
+  LODESTONE_TRY(all);
   if (all->files.empty()) return fail(ErrorCode::empty, "holds no DICOM slice", folder.string());
   if (all->files.size() == 1) return read_itk_file(all->files.front(), sink, task);  // many frames in one
   const Result<std::vector<std::size_t>> chosen = choose_series(all->slices, series);
@@ -338,7 +338,7 @@ Result<void> read_itk_series(const fs::path& folder, const std::vector<fs::path>
   for (const std::size_t i : stack->order) {
     if (all->types[i] != type) type = VoxelType::float32;
   }
-  if (const Result<void> begun = sink.begin(header_of(*all, *stack), type); !begun) return begun;
+  LODESTONE_TRY(sink.begin(header_of(*all, *stack), type));
   switch (type) {
     case VoxelType::uint8:
       return send_slices<std::uint8_t>(*all, *stack, sink, task);
@@ -374,7 +374,7 @@ Result<void> read_itk_pictures(const std::vector<fs::path>& files, const VolumeS
                               {io->GetSpacing(0), io->GetSpacing(1), io->GetSpacing(0)});
         header.files = files;
         header.warnings.push_back("pictures don't say how far slices are apart: as far as voxels in them");
-        if (const Result<void> begun = sink.begin(header, VoxelType::uint16); !begun) return begun;
+        LODESTONE_TRY(sink.begin(header, VoxelType::uint16));
       }
       if (own != size) {
         return fail(ErrorCode::bad_format,

@@ -18,7 +18,7 @@ namespace {
 Result<void> read_folder(const fs::path& folder, const VolumeReadOptions& options, const VolumeSink& sink,
                          const Task& task) {
   const Result<std::vector<fs::path>> files = detail::files_of(folder);
-  if (!files) return fail(files.error());
+  LODESTONE_TRY(files);
   std::vector<fs::path> slices, pictures;
   for (const fs::path& file : *files) {
     if (detail::is_picture(file)) {
@@ -78,8 +78,7 @@ Result<ScannedVolume> read_volume(const fs::path& path, const VolumeReadOptions&
     bytes->insert(bytes->end(), values.begin(), values.end());
     return {};
   };
-  const Result<void> read = read_volume(path, options, sink, task);
-  if (!read) return fail(read.error());
+  LODESTONE_TRY(read_volume(path, options, sink, task));
   switch (type) {
     case VoxelType::uint8:
       volume.values = values_of<std::uint8_t>(*bytes);

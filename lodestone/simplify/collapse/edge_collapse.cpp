@@ -190,13 +190,13 @@ void release_mesh(State& state) {
 }  // namespace
 
 Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOptions& options, Task task) {
-  if (const Result<void> ok = check(mesh, options); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(mesh, options));
   if (options.input != Input::valid) {
-    if (const Result<void> ok = validate(mesh, task); !ok) return fail(ok.error());
+    LODESTONE_TRY(validate(mesh, task));
   }
   const Task passes = task.part(0.9);
   Result<State> state = detail::make_state(mesh, options, passes);
-  if (!state) return fail(state.error());
+  LODESTONE_TRY(state);
   Run run = run_passes(*state, options, passes);
   if (task.cancelled()) return cancelled_error("edge collapse");
   EdgeCollapseResult result;
@@ -209,7 +209,7 @@ Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOp
   ReplayOptions replaying;
   replaying.input = Input::valid;
   Result<ReplayResult> replayed = replay(mesh, log, prefix.count, replaying, task);
-  if (!replayed) return fail(replayed.error());
+  LODESTONE_TRY(replayed);
   result.mesh = std::move(replayed->mesh);
   result.origin = std::move(replayed->origin);
   if (options.record_log) result.log = std::move(log);

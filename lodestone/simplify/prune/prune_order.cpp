@@ -273,9 +273,9 @@ Result<void> check(const Mesh& mesh, const PruneOptions& options) {
 }  // namespace
 
 Result<PruneOrder> prune_order(const Mesh& mesh, const PruneOptions& options, Task task) {
-  if (const Result<void> ok = check(mesh, options); !ok) return fail(ok.error());
+  LODESTONE_TRY(check(mesh, options));
   if (options.input != Input::valid) {
-    if (const Result<void> ok = validate(mesh, task); !ok) return fail(ok.error());
+    LODESTONE_TRY(validate(mesh, task));
   }
   PruneOrder out;
   out.parts = parts_of(mesh);
