@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "app/output/setting_names.h"
 #include "app/output/text.h"
 
 namespace lodestone::app {
@@ -19,11 +20,11 @@ void Console::say(std::string_view line) const {
 }
 
 void Console::note(std::string_view text) const {
-  if (talk_ != Talk::quiet) say("lod: " + printable(text));
+  if (talk_ != Talk::quiet) say("lod: " + printable(with_options(text)));
 }
 
 void Console::detail(std::string_view text) const {
-  if (talk_ == Talk::verbose) say("lod: " + printable(text));
+  if (talk_ == Talk::verbose) say("lod: " + printable(with_options(text)));
 }
 
 void Console::error(const Error& error) const { say(error_text(error)); }
@@ -34,7 +35,7 @@ Error Console::stopped() const {
   return Error{ErrorCode::cancelled, std::move(what), {}, "nothing half done is left"};
 }
 
-void Console::shortfall(std::string_view text) const { say("lod: " + printable(text)); }
+void Console::shortfall(std::string_view text) const { say("lod: " + printable(with_options(text))); }
 
 void Console::result(std::string_view text) const {
   progress_.clear();

@@ -1,10 +1,9 @@
 #include "app/output/json.h"
 
 #include <algorithm>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "lodestone/base/file.h"
+#include "app/output/setting_names.h"
 
 namespace lodestone::app {
 namespace {
@@ -80,10 +79,10 @@ Json build_json(const BuildReport& report) {
     json["verified"] = {{"levels", report.verified->levels},
                         {"largest_difference", report.verified->largest_difference}};
   }
-  json["warnings"] = report.warnings;
+  json["warnings"] = with_options(report.warnings);
   json["shortfalls"] = Json::array();
   for (const chain::Shortfall& shortfall : report.shortfalls) {
-    json["shortfalls"].push_back({{"level", shortfall.level}, {"reason", shortfall.reason}});
+    json["shortfalls"].push_back({{"level", shortfall.level}, {"reason", with_options(shortfall.reason)}});
   }
   return json;
 }
@@ -125,7 +124,7 @@ std::string to_json(const SimplifyReport& report) {
   json["unit"] = unit_or_null(report.unit);
   json["method"] = report.method;
   json["stop_reason"] = report.stop_reason;
-  json["shortfall"] = report.shortfall.empty() ? Json(nullptr) : Json(report.shortfall);
+  json["shortfall"] = report.shortfall.empty() ? Json(nullptr) : Json(with_options(report.shortfall));
   json["locked"] = {{"border", report.locked.border},
                     {"seam_corner", report.locked.seam_corner},
                     {"non_manifold", report.locked.non_manifold},
@@ -137,7 +136,7 @@ std::string to_json(const SimplifyReport& report) {
                      {"measure", report.measure_seconds},
                      {"write", report.write_seconds}};
   json["peak_memory_bytes"] = report.peak_memory_bytes;
-  json["warnings"] = report.warnings;
+  json["warnings"] = with_options(report.warnings);
   return text_of(json);
 }
 
@@ -258,7 +257,7 @@ std::string to_json(const InfoReport& report) {
                                   {"normalized", a.normalized}});
   }
   json["materials"] = report.materials;
-  json["warnings"] = report.warnings;
+  json["warnings"] = with_options(report.warnings);
   return text_of(json);
 }
 
@@ -277,7 +276,7 @@ std::string to_json(const RenderReport& report) {
                      {"prepare", report.prepare_seconds},
                      {"draw", report.draw_seconds},
                      {"write", report.write_seconds}};
-  json["warnings"] = report.warnings;
+  json["warnings"] = with_options(report.warnings);
   return text_of(json);
 }
 
@@ -298,7 +297,7 @@ std::string to_json(const SheetReport& report) {
   json["height"] = report.height;
   json["shading"] = report.shading;
   json["seconds"] = report.seconds;
-  json["warnings"] = report.warnings;
+  json["warnings"] = with_options(report.warnings);
   return text_of(json);
 }
 
@@ -332,8 +331,8 @@ std::string to_json(const VoxelReport& report) {
                      {"write", report.write_seconds},
                      {"total", report.total_seconds}};
   json["peak_memory_bytes"] = report.peak_memory_bytes;
-  json["shortfall"] = report.shortfall.empty() ? Json(nullptr) : Json(report.shortfall);
-  json["warnings"] = report.warnings;
+  json["shortfall"] = report.shortfall.empty() ? Json(nullptr) : Json(with_options(report.shortfall));
+  json["warnings"] = with_options(report.warnings);
   return text_of(json);
 }
 
@@ -344,7 +343,7 @@ std::string to_json(const ConvertReport& report) {
   if (!report.file_triangles.empty()) json["file_triangles"] = report.file_triangles;
   json["bytes"] = report.bytes;
   json["seconds"] = {{"read", report.read_seconds}, {"write", report.write_seconds}};
-  json["warnings"] = report.warnings;
+  json["warnings"] = with_options(report.warnings);
   return text_of(json);
 }
 

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "app/output/setting_names.h"
+
 namespace lodestone::app {
 namespace {
 
@@ -92,10 +94,10 @@ std::string wrapped(std::string_view text, std::size_t width, std::size_t indent
 }
 
 std::string error_text(const Error& error) {
-  Error clean = error;
-  clean.what = printable(error.what);
-  clean.where = printable(error.where);
-  clean.remedy = printable(error.remedy);
+  Error clean = with_options(error);
+  clean.what = printable(clean.what);
+  clean.where = printable(clean.where);
+  clean.remedy = printable(clean.remedy);
   return "lod: " + clean.line();
 }
 

@@ -9,6 +9,7 @@
 #include "app/input.h"
 #include "app/options/surface_attributes.h"
 #include "app/output/json.h"
+#include "app/output/setting_names.h"
 #include "app/output/table.h"
 #include "app/output/text.h"
 #include "app/verbs/build_plan.h"
@@ -281,7 +282,7 @@ Result<ExitCode> run_batch(const std::vector<BuildJob>& jobs, const BuildPlan& p
       console.error(report.error());
       BuildReport failed;
       failed.input = jobs[i].input.string();
-      failed.failure = report.error().line();
+      failed.failure = with_options(report.error()).line();
       runs.push_back(std::move(failed));
       failures.push_back(report.error());
       continue;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/output/help.h"
+#include "app/output/setting_names.h"
 #include "lodestone/report/ladder_report.h"
 
 namespace lodestone::app {
@@ -54,6 +55,8 @@ Result<ReportPage> ReportPage::draw(const BuildJob& job, const BuildPlan& plan, 
   data->options.insert(data->options.begin(), {"INPUT", job.input.filename().string(), true});
   data->version = version();
   data->warnings.insert(data->warnings.end(), warnings.begin(), warnings.end());
+  data->warnings = with_options(std::move(data->warnings));
+  data->shortfalls = with_options(std::move(data->shortfalls));
   return ReportPage(std::move(*data), std::move(*file));
 }
 

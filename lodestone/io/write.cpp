@@ -205,7 +205,7 @@ Result<void> check_model_name(const fs::path& path, Compression compression) {
   if (!is_writable_extension(e)) return unknown_extension(path);
   if (compression == Compression::none || is_gltf(e)) return {};
   return fail(ErrorCode::bad_argument, fmt::format("{} files hold no compressed geometry", e), path.string(),
-              "write .glb or leave --compress off");
+              "write .glb or leave `compression` off");
 }
 
 Result<void> check_ladder_name(const fs::path& path, Compression compression) {

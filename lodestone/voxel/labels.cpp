@@ -41,7 +41,7 @@ Result<void> check_labels(const std::map<std::int64_t, LabelBox>& boxes, const S
                           "not labels",
                           with_separators(boxes.size()),
                           percent(static_cast<double>(steps.steps) / static_cast<double>(steps.pairs))),
-              {}, "leave --labels out, and use --iso");
+              {}, "leave `labels` out, and use `iso`");
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ Result<std::map<std::int64_t, LabelBox>> label_boxes(const VolumeView<T>& volume
         if (value == 0) continue;
         if (value != std::floor(value) || std::abs(value) > 1e9) {
           return fail(ErrorCode::bad_argument, fmt::format("{} is no label: labels are whole numbers", value), {},
-                      "leave --labels out, and use --iso");
+                      "leave `labels` out, and use `iso`");
         }
         const auto label = static_cast<std::int64_t>(value);
         if (box == nullptr || label != last) {
@@ -73,7 +73,7 @@ Result<std::map<std::int64_t, LabelBox>> label_boxes(const VolumeView<T>& volume
           last = label;
           if (boxes.size() > kMostLabels) {
             return fail(ErrorCode::bad_argument, fmt::format("has more than {} labels", kMostLabels), {},
-                        "leave --labels out, and use --iso");
+                        "leave `labels` out, and use `iso`");
           }
         }
         const std::uint32_t at[3] = {x, y, z};

@@ -25,7 +25,7 @@ Result<void> check(const VoxelGrid& grid, const std::array<std::uint32_t, 3>& si
     return fail(ErrorCode::bad_argument, fmt::format("{} voxels are no whole multiple of {}", grid.size[k], size[k]));
   }
   if (options.fill != FillRule::shrinkwrap) return {};
-  return fail(ErrorCode::bad_argument, "shrinkwrap can't work on so many voxels", {}, "lower --resolution");
+  return fail(ErrorCode::bad_argument, "shrinkwrap can't work on so many voxels", {}, "lower `resolution`");
 }
 
 // One place on for the layer around.

@@ -62,7 +62,12 @@ Result<void> check(const LadderOptions& options) {
 
 std::string count_shortfall(const CollapsePlan& plan, std::size_t wanted, std::size_t got) {
   return fmt::format("{} triangles were asked for, {} are the fewest: {}", with_separators(wanted),
-                     with_separators(got), plan.why_it_ends());
+                     with_separators(got), plan.end().why);
+}
+
+// A level that collapses can't reach: what stands in the way.
+Shortfall at_end(const CollapsePlan& plan, std::size_t level, std::string reason) {
+  return {level, std::move(reason), ShortfallCause::nothing_to_collapse, plan.locked(), plan.end().parts};
 }
 
 // Adds a cut with its error raised to the finer levels' and accounts its time.
@@ -95,11 +100,12 @@ std::string jump_shortfall(const CollapsePlan& plan, const Jump& jump, std::size
   const bool short_of = plan.triangles_after(plan.size()) > jump.wanted;
   return fmt::format(
       "{} triangles were asked for, but errors jump below {} (to {:.2g} % of the diagonal with {}), so it ends "
-      "there{}{}; --method voxel --then-collapse makes levels anew (with --texture-size N textured ones), --force "
+      "there{}{}; `build_voxel_ladder()` `then_collapse` makes levels anew (with `texture_size` N textured ones), "
+      "`force` "
       "takes "
       "them as they are",
       with_separators(jump.wanted), with_separators(got), jump.diagonal > 0 ? 100 * jump.made.error / jump.diagonal : 0,
-      with_separators(jump.made.triangles), short_of ? ": " : "", short_of ? plan.why_it_ends() : "");
+      with_separators(jump.made.triangles), short_of ? ": " : "", short_of ? plan.end().why : "");
 }
 
 // True if a level of so many triangles differs enough from the one before to be worth writing.
@@ -135,7 +141,7 @@ Result<bool> add_count_level(LadderResult& result, LevelMaker& maker, const Coun
   if (adds) add_level(result, std::move(*kept->cut));
   if (!kept->jumps) return true;
   const std::size_t got = result.ladder.levels.back().triangles;
-  result.shortfalls.push_back({step.number, jump_shortfall(maker.plan(), jump, got)});
+  result.shortfalls.push_back({step.number, jump_shortfall(maker.plan(), jump, got), ShortfallCause::error_jumps});
   return false;
 }
 
@@ -154,10 +160,10 @@ Result<void> add_count_levels(LadderResult& result, LevelMaker& maker, const std
       if (!*goes_on) break;
       last = prefix;
     } else if (!short_of) {
-      result.shortfalls.push_back({i + 1, "it would not differ from the level before"});
+      result.shortfalls.push_back({i + 1, "it would not differ from the level before", ShortfallCause::no_difference});
     }
     if (!short_of) continue;
-    result.shortfalls.push_back({i + 1, count_shortfall(plan, targets[i], left)});
+    result.shortfalls.push_back(at_end(plan, i + 1, count_shortfall(plan, targets[i], left)));
     break;
   }
   return {};
@@ -176,7 +182,8 @@ Result<void> add_error_levels(LadderResult& result, LevelMaker& maker, const Lad
     if (!is_new) {
       result.shortfalls.push_back(
           {i + 1,
-           fmt::format("nothing coarser than the level before has a measured error within {:.6g}", options.errors[i])});
+           fmt::format("nothing coarser than the level before has a measured error within {:.6g}", options.errors[i]),
+           ShortfallCause::error_not_reached});
       result.simplify_seconds += cut->simplify_seconds;
       result.measure_seconds += cut->measure_seconds;
       continue;
@@ -184,7 +191,7 @@ Result<void> add_error_levels(LadderResult& result, LevelMaker& maker, const Lad
     last = starts.with_feedback = cut->prefix;
     add_level(result, std::move(*cut));
     if (last == plan.size() && i + 1 < options.errors.size()) {
-      result.shortfalls.push_back({i + 2, "the level before is the coarsest there is: " + plan.why_it_ends()});
+      result.shortfalls.push_back(at_end(plan, i + 2, "the level before is the coarsest there is: " + plan.end().why));
       break;
     }
   }

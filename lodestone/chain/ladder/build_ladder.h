@@ -40,10 +40,22 @@ struct LadderOptions {
   std::optional<measure::ImageOptions> image;
 };
 
+/// Why a level is not what was asked.
+enum class ShortfallCause {
+  nothing_to_collapse,    ///< no legal collapse is left: `locked` and `parts` say what stands in the way
+  error_jumps,            ///< fewer triangles have errors out of line with those of the finer levels
+  no_difference,          ///< it would be the level before
+  error_not_reached,      ///< no coarser mesh has a measured error within what was allowed
+  not_reached_by_voxels,  ///< no resolution gives what was asked
+};
+
 /// A level that is not what was asked.
 struct Shortfall {
   std::size_t level = 0;
-  std::string reason;  ///< plain words: what was asked, what was got, what was locked, which option frees it
+  std::string reason;  ///< plain words: what was asked, what was got, what was locked; settings that help in backquotes
+  ShortfallCause cause = ShortfallCause::nothing_to_collapse;
+  simplify::LockCounts locked{};  ///< vertices that cannot move, where collapses have come to their end
+  std::size_t parts = 0;          ///< drawn pieces that keep a few triangles each, where they are many of what is left
 };
 
 struct LadderResult {

@@ -271,27 +271,29 @@ std::size_t CollapsePlan::drawn_parts() const {
   return parts;
 }
 
-std::string CollapsePlan::why_it_ends() const {
+PlanEnd CollapsePlan::end() const {
   std::vector<std::string> causes;
   const auto tell = [&](std::size_t count, const char* text) {
     if (count > 0) causes.push_back(fmt::format("{} {}", with_separators(count), text));
   };
   tell(locked_.seam_corner,
-       "where seams, borders or materials meet or end (--weld, or unwrap the model anew, to free them)");
-  tell(locked_.non_manifold, "non-manifold (--weld may close cracks; else split the model into clean pieces)");
-  tell(locked_.border, "on open borders (leave --keep-border off to free them)");
+       "where seams, borders or materials meet or end (`weld_tolerance`, or unwrap the model anew, to free them)");
+  tell(locked_.non_manifold,
+       "non-manifold (`weld_tolerance` may close cracks; else split the model into clean pieces)");
+  tell(locked_.border, "on open borders (leave `keep_border` off to free them)");
   tell(locked_.by_request, "locked on request");
   std::string why = causes.empty() ? "no collapse is left that keeps the surface's topology and folds nothing"
                                    : fmt::format("vertices that cannot move: {}", fmt::join(causes, ", "));
   // A part keeps a triangle or four: where they are many of what is left, that is the cause.
   constexpr std::size_t kMany = 16;
-  if (prunes_) return why;
+  if (prunes_) return {why};
   const std::size_t parts = drawn_parts();
-  if (parts < 2 || parts * kMany < triangles_after(size())) return why;
-  return why + fmt::format(
-                   "; {} separate parts keep a few triangles each (--prune lets small ones vanish; of a mesh, --join "
-                   "LENGTH sews near ones together)",
-                   with_separators(parts));
+  if (parts < 2 || parts * kMany < triangles_after(size())) return {why};
+  why += fmt::format(
+      "; {} separate parts keep a few triangles each (`prune` lets small ones vanish; of a mesh, `join_length` "
+      "LENGTH sews near ones together)",
+      with_separators(parts));
+  return {why, parts};
 }
 
 }  // namespace lodestone::chain::detail

@@ -28,6 +28,12 @@ struct FitTargets {
   std::vector<std::optional<measure::Reference>> references;  ///< of those that are improved to a goal
 };
 
+/// Why a plan ends where it ends.
+struct PlanEnd {
+  std::string why;        ///< plain words
+  std::size_t parts = 0;  ///< as Shortfall::parts
+};
+
 class CollapsePlan {
  public:
   /// Collapses every drawn mesh as far as `smallest` drawn triangles may need (1 = as far as it goes). `original` must
@@ -60,8 +66,7 @@ class CollapsePlan {
   /// Whether parts may vanish.
   bool prunes() const { return prunes_; }
   const simplify::LockCounts& locked() const { return locked_; }
-  /// Why the plan ends where it ends, in plain words.
-  std::string why_it_ends() const;
+  PlanEnd end() const;
 
  private:
   // The next collapse of a mesh, or its next part that vanishes: the mesh's number, and a bit.

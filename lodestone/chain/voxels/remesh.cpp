@@ -22,10 +22,10 @@ Result<void> check(const RemeshOptions& options) {
   const bool count = options.triangles > 0, error = options.error > 0;
   if (count && error) return bad("a triangle count and an error are asked for at once", "choose one");
   if (options.then_collapse && !count && !error) {
-    return bad("--then-collapse needs a target", "add --triangles or --error");
+    return bad("`then_collapse` needs a target", "add `triangles` or `error`");
   }
   if (options.resolution > 0 && (count || error) && !options.then_collapse) {
-    return bad("--resolution and a target are asked for at once", "choose one, or add --then-collapse");
+    return bad("`resolution` and a target are asked for at once", "choose one, or add `then_collapse`");
   }
   return {};
 }
@@ -55,7 +55,7 @@ Result<void> collapse(const Model& model, const RemeshOptions& options, Mesh mes
   if (!made->shortfalls.empty()) out.shortfall = made->shortfalls.front().reason;
   if (made->ladder.levels.size() < 2) {
     return fail(ErrorCode::bad_argument, "the surface by voxels is not within the error that is asked for", {},
-                "raise --resolution");
+                "raise `resolution`");
   }
   out.level = std::move(made->ladder.levels[1]);
   out.level.method = "voxels and edge collapse";

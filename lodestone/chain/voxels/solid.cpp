@@ -44,7 +44,7 @@ Result<FillChoice> choose_fill(const Model& model, std::optional<voxel::FillRule
   FillChoice out{asked.value_or(fill_for(t)), reason_of(t), t.closed, t.duplicate_faces > 0, asked.has_value()};
   if (out.closed || asked != voxel::FillRule::parity) return out;
   return fail(ErrorCode::bad_argument, fmt::format("parity needs a closed surface, but {}", out.reason), {},
-              "use --fill winding");
+              "use `fill` winding");
 }
 
 namespace {
@@ -56,9 +56,9 @@ double close_voxels(const FillChoice& choice, double voxel) {
 }
 
 std::string way_out_of_nothing(const FillChoice& choice) {
-  if (!choice.closed) return "it is open and encloses nothing: close it first, or use --fill shrinkwrap";
-  const std::string thin = "its parts are thinner than a voxel: raise --resolution";
-  return choice.doubled ? thin + "; or its faces lie back to back: use --fill shrinkwrap" : thin;
+  if (!choice.closed) return "it is open and encloses nothing: close it first, or use `fill` shrinkwrap";
+  const std::string thin = "its parts are thinner than a voxel: raise `resolution`";
+  return choice.doubled ? thin + "; or its faces lie back to back: use `fill` shrinkwrap" : thin;
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ Result<void> check_memory(const VoxelGrid& grid, double bytes_a_voxel) {
       ErrorCode::out_of_memory,
       fmt::format("{} x {} x {} voxels need {}, {} are left", grid.size[0], grid.size[1], grid.size[2],
                   human_bytes(static_cast<std::uint64_t>(needed)), human_bytes(static_cast<std::uint64_t>(there))),
-      {}, "lower --resolution or --supersample");
+      {}, "lower `resolution` or `supersample`");
 }
 
 Result<VoxelGrid> solid_grid(const Box3d& bounds, const FillChoice& choice, const SolidOptions& options) {
@@ -83,7 +83,7 @@ Result<VoxelGrid> solid_grid(const Box3d& bounds, const FillChoice& choice, cons
     const double room = std::ceil(voxel > 0 ? close_voxels(choice, voxel) : 0) + 3;
     if (!(2 * room < options.resolution)) {
       return fail(ErrorCode::bad_argument, "the radius within which holes are to be closed is most of the model", {},
-                  "lower --close");
+                  "lower `close`");
     }
     margin = std::max(margin, static_cast<std::uint32_t>(room));
   }

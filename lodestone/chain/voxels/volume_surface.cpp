@@ -161,7 +161,7 @@ Result<double> choose_iso(const VolumeSurfaceOptions& options, const VolumeValue
   }
   if (!options.iso) {
     const double iso = voxel::otsu_threshold(values, range.least, range.most);
-    warnings.push_back(fmt::format("the surface is that at {} of {} to {} (Otsu's threshold); choose with --iso",
+    warnings.push_back(fmt::format("the surface is that at {} of {} to {} (Otsu's threshold); choose with `iso`",
                                    short_number(iso), short_number(range.least), short_number(range.most)));
     return iso;
   }

@@ -51,12 +51,12 @@ Result<void> add_levels(LadderResult& out, VoxelLevels& levels, const std::vecto
     const Task part = task.part(1.0 / static_cast<double>(targets.size()), fmt::format("level {}", i + 1));
     Result<VoxelCut> cut = detail::cut_for(levels, targets[i], finest, &reference, options.distance, part);
     if (!cut && cut.error().code == ErrorCode::empty && i > 0) {
-      out.shortfalls.push_back({i + 1, cut.error().what});
+      out.shortfalls.push_back({i + 1, cut.error().what, ShortfallCause::not_reached_by_voxels});
       break;
     }
     LODESTONE_TRY(cut);
     if (std::string reason = detail::shortfall_of(targets[i], *cut); !reason.empty()) {
-      out.shortfalls.push_back({i + 1, std::move(reason)});
+      out.shortfalls.push_back({i + 1, std::move(reason), ShortfallCause::not_reached_by_voxels});
     }
     detail::tell_vanished(levels, out.ladder.original, *cut, out.warnings);
     finest = std::max<std::uint32_t>(8, cut->resolution * 4 / 5);  // half the triangles, with some room

@@ -134,7 +134,7 @@ Result<Mesh> VoxelLevels::surface_by_slabs(std::uint32_t resolution, const Task&
   const std::uint32_t ratio = most_resolution() / resolution;
   if (ratio * resolution != most_resolution()) {
     return fail(ErrorCode::bad_argument, fmt::format("a resolution of {} can't be made slab by slab", resolution), {},
-                "ask for --resolution alone");
+                "ask for `resolution` alone");
   }
   std::array<std::uint32_t, 3> size{};
   for (std::size_t k = 0; k < 3; ++k) size[k] = grid.size[k] / ratio;
@@ -220,7 +220,7 @@ Result<Mesh> VoxelLevels::even_surface_at(std::uint32_t resolution, const Task& 
     if (error.code != ErrorCode::empty) return fail(std::move(error));
     return fail(ErrorCode::empty,
                 fmt::format("no part is half as thick as a voxel of {} along the longest side", resolution), {},
-                "raise --resolution, or use --keep-thin");
+                "raise `resolution`, or use `keep_thin`");
   };
   if (options_.placement == VertexPlacement::edge_ratio) {
     Result<Mesh> mesh = voxel::edge_ratio_surface(bits, size, {}, task);

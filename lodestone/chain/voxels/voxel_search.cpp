@@ -132,7 +132,7 @@ Result<VoxelCut> find_error(VoxelLevels& levels, double limit, std::uint32_t gue
   }
   if (best) return std::move(*best);
   if (finest.resolution == 0) {
-    return fail(ErrorCode::empty, "no part is half as thick as a voxel", {}, "raise --resolution");
+    return fail(ErrorCode::empty, "no part is half as thick as a voxel", {}, "raise `resolution`");
   }
   return finest;
 }

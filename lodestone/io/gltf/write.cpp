@@ -88,7 +88,7 @@ Result<void> check(const Model& original, std::span<const Level> levels, const s
       (compression == Compression::meshopt && !has_meshopt()) || (compression == Compression::draco && !has_draco());
   if (missing) {
     return fail(ErrorCode::unsupported, "this build was made without that compression", path.string(),
-                "build with LODESTONE_WITH_MESHOPT and LODESTONE_WITH_DRACO, or leave --compress off");
+                "build with LODESTONE_WITH_MESHOPT and LODESTONE_WITH_DRACO, or leave `compression` off");
   }
   return {};
 }

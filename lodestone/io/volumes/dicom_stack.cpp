@@ -114,7 +114,7 @@ Result<std::vector<std::size_t>> choose_series(std::span<const DicomSlice> slice
   if (chosen.empty()) {
     if (groups.size() == 1) return groups.front();
     return fail(ErrorCode::bad_argument, fmt::format("holds {} series: {}", groups.size(), listed(slices, groups)), {},
-                "choose one, such as --series 1");
+                "choose one, such as `series` 1");
   }
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(chosen.data(), chosen.data() + chosen.size(), number);
@@ -129,7 +129,7 @@ Result<std::vector<std::size_t>> choose_series(std::span<const DicomSlice> slice
   return fail(ErrorCode::bad_argument,
               fmt::format("there is {} series '{}'; there are {}", named.empty() ? "no" : "more than one", chosen,
                           listed(slices, groups)),
-              {}, "choose one by its number, such as --series 1");
+              {}, "choose one by its number, such as `series` 1");
 }
 
 Result<DicomStack> stack_slices(std::span<const DicomSlice> slices, std::span<const std::size_t> chosen) {

@@ -395,7 +395,7 @@ Result<void> read_itk_pictures(const std::vector<fs::path>& files, const VolumeS
 namespace {
 tl::unexpected<Error> not_built_in(const fs::path& path) {
   return fail(ErrorCode::unsupported, "reading volumes of this format is not built in", path.string(),
-              "build with LODESTONE_WITH_ITK=ON (libinsighttoolkit5-dev), or convert it to bare values (--raw)");
+              "build with LODESTONE_WITH_ITK=ON (libinsighttoolkit5-dev), or convert it to bare values (`raw`)");
 }
 }  // namespace
 

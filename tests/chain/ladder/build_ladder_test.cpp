@@ -75,7 +75,7 @@ TEST(BuildLadder, what_cannot_shrink_further_ends_early_and_says_why) {
   options.constraints.keep_border = true;
   const LadderResult bordered = built(test::grid(8), options);
   ASSERT_FALSE(bordered.shortfalls.empty());
-  EXPECT_NE(bordered.shortfalls[0].reason.find("--keep-border"), std::string::npos) << bordered.shortfalls[0].reason;
+  EXPECT_NE(bordered.shortfalls[0].reason.find("`keep_border`"), std::string::npos) << bordered.shortfalls[0].reason;
 }
 
 TEST(BuildLadder, one_budget_for_all_meshes_spent_where_it_hurts_least) {

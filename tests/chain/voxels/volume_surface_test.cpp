@@ -164,7 +164,7 @@ TEST(VolumeSurface, takes_no_grey_values_for_labels) {
   const auto grey = surface_of(volume, labels_with(0));
   ASSERT_FALSE(grey);
   EXPECT_EQ(grey.error().code, ErrorCode::bad_argument);
-  EXPECT_NE(grey.error().line().find("grey values, not labels; leave --labels out"), std::string::npos);
+  EXPECT_NE(grey.error().line().find("grey values, not labels; leave `labels` out"), std::string::npos);
   // As many labels in cubes of four voxels, in order; and single voxels whose numbers say nothing.
   fill([](int x, int y, int z) { return 1 + x / 4 + 6 * (y / 4) + 36 * (z / 4); });
   const auto cubes = surface_of(volume, labels_with(0));
