@@ -55,6 +55,11 @@ std::filesystem::path hidden_beside(const std::filesystem::path& place) {
   return place.parent_path() / fmt::format(".{}.{}.tmp", place.filename().string(), ::getpid());
 }
 
+tl::unexpected<Error> in_the_way(const std::filesystem::path& hidden, const std::filesystem::path& output) {
+  return fail(ErrorCode::cannot_write, fmt::format("{} is in the way, left by a run that was killed", hidden.string()),
+              output.string(), "remove it");
+}
+
 }  // namespace
 
 Result<InputFile> InputFile::open(const std::filesystem::path& path) {
@@ -186,7 +191,8 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
   }
   if (file.descriptor_ < 0) {
     const int error_number = errno;
-    file.hidden_.clear();
+    const std::filesystem::path hidden = std::exchange(file.hidden_, {});
+    if (error_number == EEXIST) return in_the_way(hidden, path);
     return fail(ErrorCode::cannot_write, error_number == ENOENT ? "its folder does not exist" : reason(error_number),
                 path.string(), error_number == ENOENT ? "make the folder first" : "");
   }
@@ -251,7 +257,9 @@ Result<void> OutputFile::commit() {
   if (hidden_.empty()) {  // give the nameless file a name beside its place, then rename over the old one
     std::filesystem::path name = hidden_beside(place_);
     const std::string self = fmt::format("/proc/self/fd/{}", descriptor_);
-    if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) return cannot(errno);
+    if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) {
+      return errno == EEXIST ? in_the_way(name, path_) : cannot(errno);
+    }
     hidden_ = std::move(name);
   }
   if (::close(std::exchange(descriptor_, -1)) != 0) return cannot(errno);
@@ -270,9 +278,7 @@ Result<StagingFolder> StagingFolder::create(const std::filesystem::path& output)
       return fail(ErrorCode::cannot_write, error.message(), output.string(),
                   "does its folder exist, and may you write there?");
     }
-    return fail(ErrorCode::cannot_write,
-                fmt::format("{} is in the way, left by a run that was killed", hidden.string()), output.string(),
-                "remove it");
+    return in_the_way(hidden, output);
   }
   staging.hidden_ = hidden;
   for (const char* inner : {"new", "old"}) {

@@ -67,6 +67,9 @@ bool equal_wedges(const std::vector<TupleBytes>& tuples, std::size_t a, std::siz
   return true;
 }
 
+// Equal to the bit counts as well: NaN is like no number, itself included, but many of them hash alike.
+bool equal_positions(const Vec3f& a, const Vec3f& b) { return a == b || std::memcmp(&a, &b, sizeof a) == 0; }
+
 // For each of n items the lowest equal item. hash(i) -> 64 bits, equal(i, j) -> bool.
 template <class Hash, class Equal>
 std::vector<std::uint32_t> representatives(std::size_t n, const Task& task, Hash hash, Equal equal) {
@@ -184,7 +187,7 @@ Result<Mesh> weld_exact(Mesh mesh, Task task) {
   LODESTONE_TRY(validate_indices(mesh, task));
   const std::vector<std::uint32_t> vertex_to = representatives(
       mesh.positions.size(), task, [&](std::size_t v) { return hash_position(mesh.positions[v]); },
-      [&](std::size_t a, std::size_t b) { return mesh.positions[a] == mesh.positions[b]; });
+      [&](std::size_t a, std::size_t b) { return equal_positions(mesh.positions[a], mesh.positions[b]); });
   if (task.cancelled()) return cancelled_error("welding");
   if (all_used_and_distinct(mesh, vertex_to)) return mesh;
   const std::vector<TupleBytes> tuples = tuple_bytes(mesh, std::vector<bool>(mesh.attributes.size(), true));

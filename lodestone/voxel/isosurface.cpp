@@ -23,11 +23,17 @@ using detail::InsideRows;
 
 namespace {
 
-// Bit k of the result: values[k] is above the limit. 64 values.
+// Above the limit, and finite.
+template <class T>
+bool is_inside(T value, T limit) {
+  return (value > limit) & (value <= std::numeric_limits<T>::max());
+}
+
+// Bit k of the result: values[k] is inside. 64 values.
 template <class T>
 std::uint64_t above(const T* values, T limit) {
   std::uint64_t word = 0;
-  for (std::uint32_t k = 0; k < 64; ++k) word |= std::uint64_t{values[k] > limit} << k;
+  for (std::uint32_t k = 0; k < 64; ++k) word |= std::uint64_t{is_inside(values[k], limit)} << k;
   return word;
 }
 
@@ -93,7 +99,7 @@ void set_row(const T* values, std::uint32_t count, T limit, std::uint64_t* bits,
     carried = word >> 63;
   }
   std::uint64_t rest = 0;
-  for (std::uint32_t k = 0; x + k < count; ++k) rest |= std::uint64_t{values[x + k] > limit} << k;
+  for (std::uint32_t k = 0; x + k < count; ++k) rest |= std::uint64_t{is_inside(values[x + k], limit)} << k;
   bits[w] = rest << 1 | carried;
   if (w + 1 < words) bits[w + 1] = rest >> 63;
 }
@@ -197,8 +203,10 @@ Result<Mesh> surface_of(const VolumeView<T>& volume, const IsosurfaceOptions& op
   LODESTONE_TRY(made);
   if (options.trilinear) {
     made->mesh.triangles.clear();
+    // As inside_rows() takes it: what is above there must be above here.
+    const double iso = std::is_floating_point_v<T> ? static_cast<double>(static_cast<T>(options.iso)) : options.iso;
     const auto values_at = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-      return corner_values(volume, options.iso, x, y, z);
+      return corner_values(volume, iso, x, y, z);
     };
     detail::make_trilinear_triangles(made->rows, made->surface, values_at, made->mesh, task);
     if (task.cancelled()) return cancelled_error("contouring");

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -100,6 +101,15 @@ TEST_F(File, a_replaced_file_keeps_its_permissions) {
   ASSERT_TRUE(out->commit());
   EXPECT_EQ(*read_file(folder_ / "a.bin"), "new");
   EXPECT_EQ(fs::status(folder_ / "a.bin").permissions(), only_mine);
+}
+
+// Two outputs of one process under one name stand for a run that was killed, with the same process number.
+TEST_F(File, what_a_killed_run_left_is_named) {
+  std::ofstream(folder_ / ("." + std::string("a.bin.") + std::to_string(::getpid()) + ".tmp")) << "left";
+  auto out = OutputFile::create(folder_ / "a.bin");  // where there are no nameless files, this fails already
+  const Result<void> done = out ? out->commit() : fail(out.error());
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().line().find("is in the way, left by a run that was killed; remove it"), std::string::npos);
 }
 
 TEST_F(File, a_symbolic_link_stays_and_its_target_gets_the_bytes) {

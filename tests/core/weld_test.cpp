@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "lodestone/base/random.h"
 #include "lodestone/core/validate.h"
 #include "support/shapes.h"
@@ -56,6 +58,16 @@ TEST(Weld, minus_zero_is_zero_and_unused_vertices_go) {
   ASSERT_TRUE(welded);
   EXPECT_EQ(welded->vertex_count(), 4U);
   EXPECT_EQ(welded->triangles[1][0], welded->triangles[0][0]);
+}
+
+// As many as this took a minute where each was compared with all.
+TEST(Weld, vertices_that_are_no_numbers_go_quickly) {
+  Mesh mesh = test::torus(8);
+  const std::size_t vertices = mesh.vertex_count();
+  mesh.positions.resize(vertices + 400'000, Vec3f{std::numeric_limits<float>::quiet_NaN(), 0, 0});
+  const auto welded = weld_exact(std::move(mesh));
+  ASSERT_TRUE(welded);
+  EXPECT_EQ(welded->vertex_count(), vertices);
 }
 
 TEST(Weld, large_meshes_give_the_same_with_any_threads) {

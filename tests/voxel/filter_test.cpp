@@ -49,6 +49,17 @@ TEST(Gaussian, leaves_a_constant_volume_alone_up_to_its_border) {
   EXPECT_FALSE(gaussian(flat, {std::nan(""), 0, 0}));
 }
 
+TEST(Gaussian, of_next_to_nothing_leaves_values_as_they_are) {
+  ScalarVolume<float> volume;
+  volume.grid.size = {3, 3, 3};
+  for (int i = 0; i < 27; ++i) volume.values.push_back(static_cast<float>(i));
+  for (const double sigma : {1e-300, 1e-9, 0.009, 0.02}) {
+    const auto blurred = gaussian(volume, {sigma, sigma, sigma});
+    ASSERT_TRUE(blurred);
+    EXPECT_EQ(blurred->values, volume.values) << sigma;
+  }
+}
+
 TEST(Median, takes_speckles_away_and_keeps_edges) {
   ScalarVolume<std::int16_t> volume;
   volume.grid.size = {8, 8, 8};

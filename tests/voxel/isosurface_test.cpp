@@ -97,6 +97,14 @@ TEST(Isosurface, values_that_are_not_finite) {
   EXPECT_TRUE(topology_of(*mesh).closed);
 }
 
+TEST(Isosurface, an_infinite_value_is_outside_with_and_without_trilinear) {
+  for (const std::uint32_t width : {3U, 70U}) {  // by words, and what is left of a row
+    ScalarVolume<float> volume = volume_of<float>({width, 3, 3}, [](Vec3d) { return -1; });
+    volume.values[volume.index(1, 1, 1)] = std::numeric_limits<float>::infinity();
+    for (const bool trilinear : {false, true}) EXPECT_FALSE(isosurface(volume, {0, trilinear}));
+  }
+}
+
 TEST(Isosurface, what_is_no_volume) {
   ScalarVolume<float> none;
   EXPECT_EQ(isosurface(none, {0}).error().code, ErrorCode::bad_argument);

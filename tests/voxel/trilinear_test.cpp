@@ -110,6 +110,17 @@ TEST(TrilinearSurface, of_noise_is_closed_and_manifold_at_edges) {
   }
 }
 
+// 0.1 is no float: values that equal the float next to it lie on one side of it in all parts of the work.
+TEST(TrilinearSurface, at_a_value_that_is_no_float) {
+  ScalarVolume<float> volume = noise(12, 3);
+  for (std::size_t i = 0; i < volume.values.size(); i += 3) volume.values[i] = 0.1F;
+  const auto mesh = isosurface(volume, {0.1, true});
+  ASSERT_TRUE(mesh);
+  const Topology t = topology_of(*mesh);
+  EXPECT_TRUE(t.closed);
+  EXPECT_EQ(t.nonmanifold_edges + t.inconsistent_edges, 0U);
+}
+
 // Two corners joined by their face: one piece where the table makes two.
 TEST(TrilinearSurface, joins_corners_as_faces_do) {
   ScalarVolume<float> volume;
