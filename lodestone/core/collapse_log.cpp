@@ -170,6 +170,7 @@ void compact(const Mesh& mesh, const CollapseLog& log, std::size_t count, Replay
   out.mesh.positions.reserve(kept_vertices.size());
   for (const std::uint32_t v : kept_vertices) out.mesh.positions.push_back(positions[v]);
   pick_tuples(blend_attributes(mesh, log, count), kept_wedges, out.mesh);
+  out.vertex_origin = std::move(kept_vertices);
 }
 
 Result<void> check(const Mesh& mesh, const CollapseLog& log, std::size_t count, const ReplayOptions& options,

@@ -49,6 +49,7 @@ struct CollapseLog {
 struct ReplayResult {
   Mesh mesh;                          ///< compact: vertices and wedges in ascending order of their original index
   std::vector<std::uint32_t> origin;  ///< for each triangle, the input triangle that it descends from
+  std::vector<std::uint32_t> vertex_origin;  ///< for each vertex, the input vertex that others collapsed into; rising
 };
 
 /// What else becomes of triangles. One entry an input triangle, non-zero = yes; empty = none.

@@ -200,6 +200,12 @@ std::vector<CollapsePlan::Progress> CollapsePlan::progress_after(std::size_t cou
 }
 
 Result<Model> CollapsePlan::model_after(std::size_t count, Task task) const {
+  std::vector<std::vector<std::uint32_t>> vertex_origins;
+  return replayed(count, vertex_origins, task);
+}
+
+Result<Model> CollapsePlan::replayed(std::size_t count, std::vector<std::vector<std::uint32_t>>& vertex_origins,
+                                     const Task& task) const {
   const std::vector<Progress> at = progress_after(count);
   double error = 0;  // the largest of the prefix: its last step's
   if (count > 0) {
@@ -215,19 +221,22 @@ Result<Model> CollapsePlan::model_after(std::size_t count, Task task) const {
   model.gltf_axes = original_->gltf_axes;
   model.uv_origin_top = original_->uv_origin_top;
   const double share = 1.0 / static_cast<double>(std::max<std::size_t>(1, logs_.size()));
+  vertex_origins.assign(logs_.size(), {});
   for (std::size_t m = 0; m < logs_.size(); ++m) {
     if (logs_[m].start_triangles == 0) {  // not drawn: as it was
       model.meshes.push_back(original_->meshes[m]);
       continue;
     }
-    Result<Mesh> made = mesh_after(m, at[m], error, task.part(share));
+    Result<ReplayResult> made = mesh_after(m, at[m], error, task.part(share));
     LODESTONE_TRY(made);
-    model.meshes.push_back(std::move(*made));
+    model.meshes.push_back(std::move(made->mesh));
+    vertex_origins[m] = std::move(made->vertex_origin);
   }
   return model;
 }
 
-Result<Mesh> CollapsePlan::mesh_after(std::size_t m, const Progress& progress, double error, const Task& task) const {
+Result<ReplayResult> CollapsePlan::mesh_after(std::size_t m, const Progress& progress, double error,
+                                              const Task& task) const {
   const simplify::PruneOrder& thin = thin_[m];
   ReplayOptions options;
   options.input = Input::valid;
@@ -246,13 +255,13 @@ Result<Mesh> CollapsePlan::mesh_after(std::size_t m, const Progress& progress, d
       options.left_out[t] = part != kNone ? gone[part] : 0;
     }
   }
-  Result<ReplayResult> replayed = replay(mesh(m), logs_[m], progress.collapses, options, task);
-  LODESTONE_TRY(replayed);
+  Result<ReplayResult> out = replay(mesh(m), logs_[m], progress.collapses, options, task);
+  LODESTONE_TRY(out);
   if (keep_area_) {
-    simplify::grow_parts(mesh(m), thin, area, error, placings_[m], replayed->origin, replayed->mesh);
+    simplify::grow_parts(mesh(m), thin, area, error, placings_[m], out->origin, out->mesh);
   }
-  if (options.untouched.empty()) finish(replayed->mesh);
-  return std::move(replayed->mesh);
+  if (options.untouched.empty()) finish(out->mesh);
+  return out;
 }
 
 void CollapsePlan::finish(Mesh& mesh) const {

@@ -13,6 +13,7 @@
 #include "lodestone/base/task.h"
 #include "lodestone/chain/ladder/constraints.h"
 #include "lodestone/chain/ladder/effort.h"
+#include "lodestone/chain/ladder/feedback_detail.h"
 #include "lodestone/core/collapse_log.h"
 #include "lodestone/core/model.h"
 #include "lodestone/measure/distance.h"
@@ -91,10 +92,12 @@ class CollapsePlan {
   void count_triangles();
   std::size_t drawn_parts() const;
   std::vector<Progress> progress_after(std::size_t count) const;
-  Result<Mesh> mesh_after(std::size_t m, const Progress& progress, double error, const Task& task) const;
+  Result<Model> replayed(std::size_t count, std::vector<std::vector<std::uint32_t>>& vertex_origins,
+                         const Task& task) const;
+  Result<ReplayResult> mesh_after(std::size_t m, const Progress& progress, double error, const Task& task) const;
   void finish(Mesh& mesh) const;
   bool can_take_feedback(std::size_t m) const;
-  Result<Mesh> mesh_with_feedback(std::size_t m, Mesh plain, Effort effort, double goal, FitTargets& targets,
+  Result<Mesh> mesh_with_feedback(std::size_t m, NamedMesh plain, Effort effort, double goal, FitTargets& targets,
                                   const Task& task) const;
 
   const Model* original_ = nullptr;

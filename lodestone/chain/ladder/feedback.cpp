@@ -3,6 +3,7 @@
 // Source   docs/papers/measured-feedback.md
 #include <algorithm>
 #include <optional>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -45,6 +46,11 @@ constexpr double kRoundsMean = 1.03;                      // how far the mean ma
 constexpr int kSolves = 6;
 constexpr int kFitAttempts = 3;
 
+// The first name that no vertex of the original has.
+std::uint32_t first_new_name(const FeedbackSource& source) {
+  return static_cast<std::uint32_t>(source.target.original().vertex_count());
+}
+
 // For each vertex of a mesh, the largest distance found at the triangle of a level that is closest to it; 0 where none
 // is or the task is cancelled.
 std::vector<double> error_at_vertices(const Mesh& mesh, const TrackedLevel& level, const Task& task) {
@@ -77,15 +83,15 @@ void raise_weights(const Mesh& start, const TrackedLevel& level, std::vector<flo
 }
 
 // The start collapsed again, vertices where the level is worst weighing more; the smallest maximum.
-Result<TrackedLevel> weighted(const FeedbackSource& source, TrackedLevel best, Effort effort, const Task& task) {
+Result<NamedLevel> weighted(const FeedbackSource& source, NamedLevel best, Effort effort, const Task& task) {
   EdgeCollapseOptions options = source.options;
-  options.target_triangles = best.mesh().triangles.size();
+  options.target_triangles = best.level.mesh().triangles.size();
   options.record_log = false;
   options.weights.resize(source.start.vertex_count(), 1.0F);
-  options.no_move = at_positions(source.start, source.no_move_positions);
-  TrackedLevel current = best;
-  const double start_mean = best.mean();
-  TrackedLevel::Faults most_faults = best.faults(task);
+  options.no_move = of_original(source.start_names, source.options.no_move);
+  TrackedLevel current = best.level;
+  const double start_mean = best.level.mean();
+  TrackedLevel::Faults most_faults = best.level.faults(task);
   bool knows_original = false;
   for (int round = 0; round < kWeightedRounds && !task.cancelled(); ++round) {
     raise_weights(source.start, current, options.weights, task);
@@ -94,7 +100,7 @@ Result<TrackedLevel> weighted(const FeedbackSource& source, TrackedLevel best, E
     LODESTONE_TRY(made);
     if (made->mesh.triangles.empty() || task.cancelled()) break;
     current = TrackedLevel(source.target, std::move(made->mesh), task);
-    if (!(current.max() < best.max()) || current.mean() > kMeanSlack * start_mean) continue;
+    if (!(current.max() < best.level.max()) || current.mean() > kMeanSlack * start_mean) continue;
     // Collapses leave some of the faults that an original has: these may be others, but for what is to be fitted.
     const TrackedLevel::Faults faults = current.faults(task);
     if (!faults.no_more_than(most_faults) && effort == Effort::normal && !knows_original) {
@@ -104,7 +110,7 @@ Result<TrackedLevel> weighted(const FeedbackSource& source, TrackedLevel best, E
       most_faults.folds = std::max(most_faults.folds, spatial::folds(original).size());
       knows_original = true;
     }
-    if (faults.no_more_than(most_faults)) best = current;
+    if (faults.no_more_than(most_faults)) best = {current, names_after(source.start_names, made->vertex_origin)};
   }
   return best;
 }
@@ -114,45 +120,51 @@ bool has_borders(const Mesh& mesh, const Task& task) {
   return std::any_of(edges.edges.begin(), edges.edges.end(), [](const Edge& e) { return e.count != 2; });
 }
 
-// Adds the positions of marked vertices.
-void add_positions(const Mesh& mesh, const std::vector<std::uint8_t>& marked, std::vector<Vec3f>& list) {
+// Adds marked vertices to a list, which stays sorted by name.
+void hold(const NamedLevel& level, const std::vector<std::uint8_t>& marked, std::vector<HeldVertex>& list) {
+  const Mesh& mesh = level.level.mesh();
   for (std::size_t v = 0; v < marked.size(); ++v) {
-    if (marked[v] != 0) list.push_back(mesh.positions[v]);
+    if (marked[v] != 0) list.push_back({level.names[v], mesh.positions[v]});
   }
-  std::sort(list.begin(), list.end(), before);
-  list.erase(std::unique(list.begin(), list.end()), list.end());
+  const auto key = [](const HeldVertex& h) { return std::tuple{h.name, h.position.x, h.position.y, h.position.z}; };
+  std::sort(list.begin(), list.end(), [&](const HeldVertex& a, const HeldVertex& b) { return key(a) < key(b); });
+  const auto end =
+      std::unique(list.begin(), list.end(), [&](const HeldVertex& a, const HeldVertex& b) { return key(a) == key(b); });
+  list.erase(end, list.end());
 }
 
-// Adds the positions of those vertices of a level where a coarser one is beyond a limit.
-void add_positions_beyond(const TrackedLevel& level, const TrackedLevel& coarser, double limit,
-                          std::vector<Vec3f>& list, const Task& task) {
-  const std::vector<double> worst = error_at_vertices(level.mesh(), coarser, task);
+// Adds those vertices of a level where a coarser one is beyond a limit.
+void hold_beyond(const NamedLevel& level, const TrackedLevel& coarser, double limit, std::vector<HeldVertex>& list,
+                 const Task& task) {
+  const std::vector<double> worst = error_at_vertices(level.level.mesh(), coarser, task);
   std::vector<std::uint8_t> bad(worst.size());
   for (std::size_t v = 0; v < worst.size(); ++v) bad[v] = worst[v] > limit ? 1 : 0;
-  add_positions(level.mesh(), bad, list);
+  hold(level, bad, list);
 }
 
 // Rounds of redistributing, the smallest maximum; the mean stays below `most_mean`, and no faults are added.
-Result<TrackedLevel> redistribute_rounds(const FeedbackSource& source, TrackedLevel best, double most_mean,
-                                         const TrackedLevel::Faults& most_faults, const Task& task) {
-  const std::size_t triangles = best.mesh().triangles.size();
+Result<NamedLevel> redistribute_rounds(const FeedbackSource& source, NamedLevel best, double most_mean,
+                                       const TrackedLevel::Faults& most_faults, const Task& task) {
+  const std::size_t triangles = best.level.mesh().triangles.size();
   RedistributeOptions options;
   options.most_triangles = triangles;
-  TrackedLevel current = best;
+  std::uint32_t next_name = first_new_name(source);
+  NamedLevel current = best;
   for (int round = 0, idle = 0; round < kRounds && idle < kIdleRounds && !task.cancelled(); ++round) {
     const Task part =
-        task.part(1.0 / kRounds, fmt::format("round {}, maximum {}", round + 1, short_number(best.max())));
-    Result<TrackedLevel> next = redistribute_triangles(source, current, options, part);
+        task.part(1.0 / kRounds, fmt::format("round {}, maximum {}", round + 1, short_number(best.level.max())));
+    Result<NamedLevel> next = redistribute_triangles(source, current, options, next_name, part);
     LODESTONE_TRY(next);
-    if (next->mesh().triangles.empty() || next->mean() > most_mean || next->mesh().triangles.size() > triangles) break;
+    const TrackedLevel& made = next->level;
+    if (made.mesh().triangles.empty() || made.mean() > most_mean || made.mesh().triangles.size() > triangles) break;
     ++idle;
-    const TrackedLevel::Faults faults = next->faults(task);
+    const TrackedLevel::Faults faults = made.faults(task);
     if (!faults.no_more_than(most_faults)) {
-      add_positions(next->mesh(), faults.vertices, options.no_move);  // and again from where it was
+      hold(*next, faults.vertices, options.no_move);  // and again from where it was
       continue;
     }
     current = std::move(*next);
-    if (!(current.max() < best.max())) continue;
+    if (!(current.level.max() < best.level.max())) continue;
     best = current;
     idle = 0;
   }
@@ -177,18 +189,21 @@ Result<bool> holds_goal(const FeedbackSource& source, TrackedLevel& level, const
 // A level of at most so many triangles that is certified to be within the goal; nothing where none was found. Collapses
 // that lead beyond it are not tried again: `no_collapse` of the options grows. What is left then is split and collapsed
 // elsewhere.
-Result<std::optional<TrackedLevel>> within_goal(const FeedbackSource& source, const TrackedLevel& start,
-                                                const TrackedLevel::Faults& most_faults, RedistributeOptions& options,
-                                                const Task& task) {
+Result<std::optional<NamedLevel>> within_goal(const FeedbackSource& source, const NamedLevel& start,
+                                              const TrackedLevel::Faults& most_faults, RedistributeOptions& options,
+                                              const Task& task) {
   const double most = kCertify * source.goal;
+  std::uint32_t next_name = first_new_name(source);
+  for (const std::uint32_t name : start.names) next_name = std::max(next_name, name + 1);
   bool found = false;
-  Result<TrackedLevel> level = redistribute_triangles(source, start, options, task);
+  Result<NamedLevel> made = redistribute_triangles(source, start, options, next_name, task);
   const auto look = [&]() -> Result<void> {
-    LODESTONE_TRY(level);
-    found = !level->mesh().triangles.empty() && level->mesh().triangles.size() <= options.most_triangles;
-    found = found && level->max() <= most && level->faults(task).no_more_than(most_faults);
+    LODESTONE_TRY(made);
+    TrackedLevel& level = made->level;
+    found = !level.mesh().triangles.empty() && level.mesh().triangles.size() <= options.most_triangles;
+    found = found && level.max() <= most && level.faults(task).no_more_than(most_faults);
     if (!found) return {};
-    const Result<bool> holds = holds_goal(source, *level, task);
+    const Result<bool> holds = holds_goal(source, level, task);
     LODESTONE_TRY(holds);
     found = *holds;
     return {};
@@ -196,37 +211,37 @@ Result<std::optional<TrackedLevel>> within_goal(const FeedbackSource& source, co
   Result<void> looked = look();
   for (int retry = 0; looked && !found && retry < kRetries && !task.cancelled(); ++retry) {
     const std::size_t known = options.no_collapse.size();
-    add_positions_beyond(start, *level, most, options.no_collapse, task);
+    hold_beyond(start, made->level, most, options.no_collapse, task);
     if (options.no_collapse.size() == known) break;
-    level = redistribute_triangles(source, start, options, task);
+    made = redistribute_triangles(source, start, options, next_name, task);
     looked = look();
   }
   for (int round = 0; looked && !found && options.fits && round < kRoundsForGoal && !task.cancelled(); ++round) {
-    level = redistribute_triangles(source, *level, options, task);
+    made = redistribute_triangles(source, *made, options, next_name, task);
     looked = look();
   }
   LODESTONE_TRY(looked);
   if (!found) return std::nullopt;
-  return std::make_optional(std::move(*level));
+  return std::make_optional(std::move(*made));
 }
 
 // Fewer and fewer triangles within the goal; nothing where the level can't be brought there as it is.
-Result<std::optional<TrackedLevel>> fewest_within_goal(const FeedbackSource& source, const TrackedLevel& start,
-                                                       bool fits, const Task& task) {
-  const TrackedLevel::Faults most_faults = start.faults(task);
+Result<std::optional<NamedLevel>> fewest_within_goal(const FeedbackSource& source, const NamedLevel& start, bool fits,
+                                                     const Task& task) {
+  const TrackedLevel::Faults most_faults = start.level.faults(task);
   RedistributeOptions options;
   options.fits = fits;
   options.keeps_borders = false;
-  std::optional<TrackedLevel> best;
+  std::optional<NamedLevel> best;
   double shrink = 1;  // as it is at first
   while (shrink < kLeastShrink || !best) {
     if (task.cancelled()) break;
-    const TrackedLevel& level = best ? *best : start;
-    const std::size_t now = level.mesh().triangles.size();
+    const NamedLevel& level = best ? *best : start;
+    const std::size_t now = level.level.mesh().triangles.size();
     const Task part = task.part(0.05, fmt::format("{} triangles", with_separators(now)));
     options.most_triangles = static_cast<std::size_t>(shrink * static_cast<double>(now));
     if (options.most_triangles == 0) break;
-    Result<std::optional<TrackedLevel>> next = within_goal(source, level, most_faults, options, part);
+    Result<std::optional<NamedLevel>> next = within_goal(source, level, most_faults, options, part);
     LODESTONE_TRY(next);
     if (*next) {
       if (!best) shrink = kShrink;
@@ -270,60 +285,61 @@ void fit_without_faults(TrackedLevel& level, simplify::FitOptions options, const
   }
 }
 
-Result<TrackedLevel> fitted(const FeedbackSource& source, TrackedLevel level, const Task& task) {
-  const double plain_mean = level.mean();
-  const TrackedLevel::Faults plain_faults = level.faults(task);
+Result<NamedLevel> fitted(const FeedbackSource& source, NamedLevel level, const Task& task) {
+  const double plain_mean = level.level.mean();
+  const TrackedLevel::Faults plain_faults = level.level.faults(task);
   // Fitting holds borders and what is not manifold; where these are worst, only collapsing otherwise helps.
-  if (has_borders(level.mesh(), task)) {
-    Result<TrackedLevel> start = weighted(source, std::move(level), Effort::best, task);
+  if (has_borders(level.level.mesh(), task)) {
+    Result<NamedLevel> start = weighted(source, std::move(level), Effort::best, task);
     if (!start) return start;
     level = std::move(*start);
   }
+  const std::vector<std::uint8_t>& locked = source.options.no_move;
   simplify::FitOptions fit;
   fit.solves = kSolves;
-  if (!source.no_move_positions.empty()) fit.no_move = at_positions(level.mesh(), source.no_move_positions);
-  fit_without_faults(level, fit, plain_faults, task);
+  if (!locked.empty()) fit.no_move = of_original(level.names, locked);
+  fit_without_faults(level.level, fit, plain_faults, task);
   task.advance(0.4);
   if (task.cancelled() || source.goal > 0) return level;
   // With weights, triangles are not shifted away from where they are wanted.
   if (source.options.weights.empty()) {
-    const double most_mean = std::min(kRoundsMean * level.mean(), plain_mean);
-    Result<TrackedLevel> redistributed =
+    const double most_mean = std::min(kRoundsMean * level.level.mean(), plain_mean);
+    Result<NamedLevel> redistributed =
         redistribute_rounds(source, std::move(level), most_mean, plain_faults, task.part(0.6));
     if (!redistributed) return redistributed;
     level = std::move(*redistributed);
   }
-  if (!source.no_move_positions.empty()) fit.no_move = at_positions(level.mesh(), source.no_move_positions);
-  meet_volume(level, fit.no_move, plain_faults, task);
+  if (!locked.empty()) fit.no_move = of_original(level.names, locked);
+  meet_volume(level.level, fit.no_move, plain_faults, task);
   return level;
 }
 
 }  // namespace
 
-Result<Mesh> apply_feedback(const FeedbackSource& source, Mesh plain, Effort effort, const Task& task) {
-  if (effort == Effort::fast || plain.triangles.empty()) return plain;
+Result<Mesh> apply_feedback(const FeedbackSource& source, NamedMesh plain, Effort effort, const Task& task) {
+  if (effort == Effort::fast || plain.mesh.triangles.empty()) return std::move(plain.mesh);
   const bool fits = effort == Effort::best, has_goal = source.goal > 0;
   // With weights, triangles are not shifted away from where they are wanted.
-  if (has_goal && !source.options.weights.empty()) return plain;
-  const TrackedLevel level(source.target, std::move(plain), task);
-  Result<TrackedLevel> improved = fits ? fitted(source, level, task) : weighted(source, level, effort, task);
+  if (has_goal && !source.options.weights.empty()) return std::move(plain.mesh);
+  const NamedLevel level{TrackedLevel(source.target, std::move(plain.mesh), task), std::move(plain.names)};
+  Result<NamedLevel> improved = fits ? fitted(source, level, task) : weighted(source, level, effort, task);
   if (task.cancelled()) return cancelled_error("shaping");
   LODESTONE_TRY(improved);
-  if (!has_goal) return improved->mesh();
+  if (!has_goal) return improved->level.mesh();
   // What fitting spoils is not gone into: from the plain level then, and at last as without fitting.
   struct Way {
-    const TrackedLevel* start;
+    const NamedLevel* start;
     bool fits;
   };
   std::vector<Way> ways{{&*improved, fits}, {&level, false}};
   if (fits) ways.insert(ways.begin() + 1, {&level, true});
   for (const Way& way : ways) {
-    Result<std::optional<TrackedLevel>> fewest = fewest_within_goal(source, *way.start, way.fits, task);
+    Result<std::optional<NamedLevel>> fewest = fewest_within_goal(source, *way.start, way.fits, task);
     if (task.cancelled()) return cancelled_error("shaping");
     LODESTONE_TRY(fewest);
-    if (*fewest) return (*fewest)->mesh();
+    if (*fewest) return (*fewest)->level.mesh();
   }
-  return level.mesh();
+  return level.level.mesh();
 }
 
 }  // namespace lodestone::chain::detail

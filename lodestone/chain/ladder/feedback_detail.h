@@ -1,7 +1,7 @@
 // Levels improved by their own measured error: collapsed again with weights where they are worst, then fitted.
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "lodestone/base/result.h"
@@ -14,18 +14,22 @@
 
 namespace lodestone::chain::detail {
 
-/// An order of positions.
-inline bool before(const Vec3f& a, const Vec3f& b) { return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z}; }
-
 /// What a level of one mesh is made from.
 struct FeedbackSource {
   const Mesh& start;                             ///< what is collapsed: the original, or a finer level of it
   const simplify::FitTarget& target;             ///< the original
-  const simplify::EdgeCollapseOptions& options;  ///< of the plain run, as they are for `start`; its target is not used
+  std::vector<std::uint32_t> start_names;        ///< of the start's vertices: their numbers in the original
+  const simplify::EdgeCollapseOptions& options;  ///< of the plain run, about the original; its target is not used
   /// A maximum that is enough, mesh units, for as few triangles as it takes; 0 = as small as it gets.
   double goal = 0;
   const measure::Reference* reference = nullptr;  ///< the original, mesh units; needed with a goal
-  std::vector<Vec3f> no_move_positions;           ///< of vertices that stay, sorted as before() does
+};
+
+/// A level whose vertices have names, by which they are known in other levels of the same original: their number there
+/// if the original has them, above its count of vertices if they are new.
+struct NamedMesh {
+  Mesh mesh;
+  std::vector<std::uint32_t> names;  ///< one a vertex
 };
 
 /// A mesh of at most as many triangles as `level`, which the plain run made, and nearer to the original as a rule:
@@ -33,6 +37,6 @@ struct FeedbackSource {
 /// weighing more; twice, the smallest maximum kept. With best, vertices are moved and edges turned to where distances
 /// are least; then triangles are added where the level is worst and taken away where they are missed least, in rounds,
 /// the smallest maximum kept. Errors: those of collapse_edges(), cancelled.
-Result<Mesh> apply_feedback(const FeedbackSource& source, Mesh level, Effort effort, const Task& task);
+Result<Mesh> apply_feedback(const FeedbackSource& source, NamedMesh level, Effort effort, const Task& task);
 
 }  // namespace lodestone::chain::detail

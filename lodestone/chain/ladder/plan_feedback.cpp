@@ -1,6 +1,7 @@
 // The part of CollapsePlan that shapes levels by their own measured error.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "lodestone/chain/ladder/collapse_plan_detail.h"
 #include "lodestone/chain/ladder/feedback_detail.h"
@@ -40,15 +41,6 @@ bool has_many_slivers(const Mesh& mesh) {
   return count > kMany;
 }
 
-std::vector<Vec3f> positions_of(const Mesh& mesh, const std::vector<std::uint8_t>& marked) {
-  std::vector<Vec3f> positions;
-  for (std::size_t v = 0; v < marked.size(); ++v) {
-    if (marked[v] != 0) positions.push_back(mesh.positions[v]);
-  }
-  std::sort(positions.begin(), positions.end(), before);
-  return positions;
-}
-
 }  // namespace
 
 bool CollapsePlan::can_take_feedback() const {
@@ -63,11 +55,13 @@ bool CollapsePlan::can_take_feedback(std::size_t m) const {
          std::isfinite(bounds_of(mesh(m)).diagonal()) && !has_many_slivers(mesh(m));
 }
 
-Result<Mesh> CollapsePlan::mesh_with_feedback(std::size_t m, Mesh plain, Effort effort, double goal,
+Result<Mesh> CollapsePlan::mesh_with_feedback(std::size_t m, NamedMesh plain, Effort effort, double goal,
                                               FitTargets& targets, const Task& task) const {
   const CollapseLog& log = logs_[m];
-  const std::size_t triangles = plain.triangles.size();
-  if (triangles == 0 || triangles >= log.start_triangles || triangles > kMostTriangles) return plain;
+  const std::size_t triangles = plain.mesh.triangles.size();
+  if (triangles == 0 || triangles >= log.start_triangles || triangles > kMostTriangles) {
+    return std::move(plain.mesh);
+  }
   targets.targets.resize(logs_.size());
   targets.references.resize(logs_.size());
   std::unique_ptr<simplify::FitTarget>& target = targets.targets[m];
@@ -79,19 +73,27 @@ Result<Mesh> CollapsePlan::mesh_with_feedback(std::size_t m, Mesh plain, Effort 
     reference = std::move(*made);
   }
   const simplify::EdgeCollapseOptions& options = options_[m];
-  Mesh finer;
+  ReplayResult finer;
   const bool weighs = !options.weights.empty();  // weights are about the vertices of the original
   if (!weighs && kFiner * triangles < log.start_triangles) {
     ReplayOptions of_valid;
     of_valid.input = Input::valid;
     Result<ReplayResult> replayed = replay(mesh(m), log, log.prefix_for(kFiner * triangles), of_valid, task);
     LODESTONE_TRY(replayed);
-    finer = std::move(replayed->mesh);
+    finer = std::move(*replayed);
   }
   const double scale = length(placings_[m].direction({1, 0, 0}));
-  const FeedbackSource source{
-      finer.triangles.empty() ? mesh(m) : finer, *target, options, goal / scale, reference ? &*reference : nullptr,
-      positions_of(mesh(m), options.no_move)};
+  std::vector<std::uint32_t> names = std::move(finer.vertex_origin);
+  if (finer.mesh.triangles.empty()) {
+    names.resize(mesh(m).vertex_count());
+    std::iota(names.begin(), names.end(), 0U);
+  }
+  const FeedbackSource source{finer.mesh.triangles.empty() ? mesh(m) : finer.mesh,
+                              *target,
+                              std::move(names),
+                              options,
+                              goal / scale,
+                              reference ? &*reference : nullptr};
   Result<Mesh> made = apply_feedback(source, std::move(plain), effort, task);
   if (made) finish(*made);
   return made;
@@ -99,12 +101,14 @@ Result<Mesh> CollapsePlan::mesh_with_feedback(std::size_t m, Mesh plain, Effort 
 
 Result<Model> CollapsePlan::model_with_feedback(std::size_t count, Effort effort, double goal, FitTargets& targets,
                                                 Task task) const {
-  Result<Model> model = model_after(count, task.part(0.1));
+  std::vector<std::vector<std::uint32_t>> vertex_origins;
+  Result<Model> model = replayed(count, vertex_origins, task.part(0.1));
   if (!model || effort == Effort::fast) return model;
   const double share = 0.9 / static_cast<double>(std::max<std::size_t>(1, logs_.size()));
   for (std::size_t m = 0; m < logs_.size(); ++m) {
     if (!can_take_feedback(m)) continue;
-    Result<Mesh> made = mesh_with_feedback(m, std::move(model->meshes[m]), effort, goal, targets, task.part(share));
+    Result<Mesh> made = mesh_with_feedback(m, {std::move(model->meshes[m]), std::move(vertex_origins[m])}, effort, goal,
+                                           targets, task.part(share));
     LODESTONE_TRY(made);
     model->meshes[m] = std::move(*made);
   }

@@ -21,11 +21,19 @@ constexpr int kLocalSolves = 2;
 constexpr float kNoCollapseWeight = 1e8F;  // weight of vertices to leave
 constexpr int kRings = 2;                  // around what is new: vertices that are fitted again
 
-// Vertices farther than `rings` edges from those that are new to a mesh.
-std::vector<std::uint8_t> far_from_new(const Mesh& mesh, const Mesh& old, int rings) {
-  std::vector<Vec3f> known = old.positions;
-  std::sort(known.begin(), known.end(), before);
-  std::vector<std::uint8_t> far = at_positions(mesh, known);
+// Non-zero for vertices that are where the vertex that they come from was.
+std::vector<std::uint8_t> unmoved(const Mesh& mesh, const std::vector<std::uint32_t>& vertex_origin,
+                                  const Mesh& before) {
+  std::vector<std::uint8_t> out(mesh.vertex_count(), 0);
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    const std::uint32_t was = vertex_origin[v];
+    out[v] = was < before.vertex_count() && mesh.positions[v] == before.positions[was] ? 1 : 0;
+  }
+  return out;
+}
+
+// Vertices farther than `rings` edges from those that are new to a mesh. `far`: those that are not new.
+std::vector<std::uint8_t> far_from_new(const Mesh& mesh, std::vector<std::uint8_t> far, int rings) {
   for (int ring = 0; ring < rings; ++ring) {
     const std::vector<std::uint8_t> last = far;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -38,7 +46,8 @@ std::vector<std::uint8_t> far_from_new(const Mesh& mesh, const Mesh& old, int ri
 }
 
 // Of vertices of a level, some of whose triangles have been split: the farther from the original, the heavier.
-std::vector<float> weights_for(const TrackedLevel& level, const Mesh& split, const RedistributeOptions& options) {
+std::vector<float> weights_for(const TrackedLevel& level, const Mesh& split, const std::vector<std::uint32_t>& names,
+                               const RedistributeOptions& options) {
   std::vector<float> weights(split.vertex_count(), 1.0F);
   const std::vector<simplify::TriangleError> worst = level.worst();
   for (std::size_t t = 0; t < split.triangles.size(); ++t) {
@@ -46,8 +55,8 @@ std::vector<float> weights_for(const TrackedLevel& level, const Mesh& split, con
     const auto weight = static_cast<float>(1 + kWorstWeight * share * share * share * share);
     for (const std::uint32_t v : split.vertices_of(t)) weights[v] = std::max(weights[v], weight);
   }
-  for (const std::vector<Vec3f>* positions : {&options.no_collapse, &options.no_move}) {
-    const std::vector<std::uint8_t> left = at_positions(split, *positions);
+  for (const std::vector<HeldVertex>* list : {&options.no_collapse, &options.no_move}) {
+    const std::vector<std::uint8_t> left = still_held(split, names, *list);
     for (std::size_t v = 0; v < left.size(); ++v) {
       if (left[v] != 0) weights[v] = std::max(weights[v], kNoCollapseWeight);
     }
@@ -65,46 +74,76 @@ void weight_borders(const Mesh& mesh, float weight, std::vector<float>& weights,
   }
 }
 
-std::vector<std::uint8_t> at_positions(const Mesh& mesh, const std::vector<Vec3f>& positions) {
-  std::vector<std::uint8_t> found(mesh.vertex_count(), 0);
-  for (std::size_t v = 0; v < found.size(); ++v) {
-    found[v] = std::binary_search(positions.begin(), positions.end(), mesh.positions[v], before) ? 1 : 0;
-  }
-  return found;
+std::vector<std::uint32_t> names_after(const std::vector<std::uint32_t>& names,
+                                       const std::vector<std::uint32_t>& vertex_origin) {
+  std::vector<std::uint32_t> out;
+  out.reserve(vertex_origin.size());
+  for (const std::uint32_t v : vertex_origin) out.push_back(names[v]);
+  return out;
 }
 
-Result<TrackedLevel> redistribute_triangles(const FeedbackSource& source, const TrackedLevel& level,
-                                            const RedistributeOptions& options, const Task& task) {
+std::vector<std::uint8_t> of_original(const std::vector<std::uint32_t>& names, const std::vector<std::uint8_t>& list) {
+  std::vector<std::uint8_t> out(names.size(), 0);
+  for (std::size_t v = 0; v < out.size(); ++v) out[v] = names[v] < list.size() ? list[names[v]] : std::uint8_t{0};
+  return out;
+}
+
+std::vector<std::uint8_t> still_held(const Mesh& mesh, const std::vector<std::uint32_t>& names,
+                                     const std::vector<HeldVertex>& list) {
+  std::vector<std::uint8_t> out(names.size(), 0);
+  const auto by_name = [](const HeldVertex& held, std::uint32_t name) { return held.name < name; };
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    auto held = std::lower_bound(list.begin(), list.end(), names[v], by_name);
+    for (; held != list.end() && held->name == names[v]; ++held) {
+      if (held->position == mesh.positions[v]) out[v] = 1;
+    }
+  }
+  return out;
+}
+
+Result<NamedLevel> redistribute_triangles(const FeedbackSource& source, const NamedLevel& level,
+                                          const RedistributeOptions& options, std::uint32_t& next_name,
+                                          const Task& task) {
+  const Mesh& before = level.level.mesh();
+  const std::vector<std::uint8_t>& locked = source.options.no_move;  // of the original's vertices
   simplify::SplitResult split;
   if (options.fits) {
-    const auto share = static_cast<std::size_t>(kSplitShare * static_cast<double>(level.mesh().triangles.size()));
-    split = simplify::split_worst(level, kSplit, std::max<std::size_t>(2, share), source.options.keep_border,
-                                  at_positions(level.mesh(), source.no_move_positions),
-                                  at_positions(level.mesh(), options.no_move), task);
-    std::sort(split.pulled.begin(), split.pulled.end(), before);
+    simplify::SplitOptions splitting;
+    splitting.share = kSplit;
+    splitting.most =
+        std::max<std::size_t>(2, static_cast<std::size_t>(kSplitShare * static_cast<double>(before.triangles.size())));
+    splitting.keep_borders = source.options.keep_border;
+    splitting.no_move = of_original(level.names, locked);
+    splitting.no_split = still_held(before, level.names, options.no_move);
+    split = simplify::split_worst(level.level, splitting, task);
   } else {
-    split.mesh = level.mesh();
+    split.mesh = before;
   }
+  std::vector<std::uint32_t> names = level.names;
+  while (names.size() < split.mesh.vertex_count()) names.push_back(next_name++);
   EdgeCollapseOptions collapse = source.options;
   collapse.target_triangles = options.most_triangles;
   collapse.record_log = false;
-  collapse.no_move = at_positions(split.mesh, source.no_move_positions);
-  collapse.weights = weights_for(level, split.mesh, options);
+  collapse.no_move = of_original(names, locked);
+  collapse.weights = weights_for(level.level, split.mesh, names, options);
   if (options.keeps_borders) weight_borders(split.mesh, kNoCollapseWeight, collapse.weights, task);
   Result<simplify::EdgeCollapseResult> made = simplify::collapse_edges(split.mesh, collapse, task);
   LODESTONE_TRY(made);
-  TrackedLevel next(source.target, std::move(made->mesh), task, &level);
+  const std::vector<std::uint32_t>& origin = made->vertex_origin;
   simplify::FitOptions fit;
   fit.solves = options.fits ? kLocalSolves : 0;
-  fit.no_move = far_from_new(next.mesh(), level.mesh(), kRings);
-  const std::vector<std::uint8_t> kept = at_positions(next.mesh(), source.no_move_positions);
-  const std::vector<std::uint8_t> pulled = at_positions(next.mesh(), split.pulled);
-  const std::vector<std::uint8_t> no_move = at_positions(next.mesh(), options.no_move);
+  fit.no_move = far_from_new(made->mesh, unmoved(made->mesh, origin, before), kRings);
+  std::vector<std::uint8_t> pulled(split.mesh.vertex_count(), 0);
+  for (const std::uint32_t v : split.pulled) pulled[v] = 1;
+  const std::vector<std::uint8_t> still = unmoved(made->mesh, origin, split.mesh);
+  NamedLevel next{TrackedLevel(source.target, std::move(made->mesh), task, &level.level), names_after(names, origin)};
+  const std::vector<std::uint8_t> kept = of_original(next.names, locked);
+  const std::vector<std::uint8_t> no_move = still_held(next.level.mesh(), next.names, options.no_move);
   for (std::size_t v = 0; v < fit.no_move.size(); ++v) {
-    if (kept[v] != 0 || pulled[v] != 0 || no_move[v] != 0)
-      fit.no_move[v] = 1;  // fitting would let those out again that were pulled in
+    // Fitting would let those out again that were pulled in.
+    if (kept[v] != 0 || no_move[v] != 0 || (pulled[origin[v]] != 0 && still[v] != 0)) fit.no_move[v] = 1;
   }
-  next.fit(fit, task);
+  next.level.fit(fit, task);
   return next;
 }
 

@@ -15,20 +15,42 @@ namespace lodestone::chain::detail {
 /// Raises the weights of vertices on open borders, so that they go no sooner than without weights elsewhere.
 void weight_borders(const Mesh& mesh, float weight, std::vector<float>& weights, const Task& task);
 
-/// Non-zero for vertices at one of these positions, which are sorted as before() does.
-std::vector<std::uint8_t> at_positions(const Mesh& mesh, const std::vector<Vec3f>& positions);
+/// A tracked level whose vertices have names, see NamedMesh.
+struct NamedLevel {
+  simplify::TrackedLevel level;
+  std::vector<std::uint32_t> names;  ///< one a vertex of its mesh
+};
+
+/// Names of the vertices that a collapse has left, where those before it had `names`.
+std::vector<std::uint32_t> names_after(const std::vector<std::uint32_t>& names,
+                                       const std::vector<std::uint32_t>& vertex_origin);
+
+/// For each vertex, its entry in a list about the original's vertices; 0 for new ones, and where the list is empty.
+std::vector<std::uint8_t> of_original(const std::vector<std::uint32_t>& names, const std::vector<std::uint8_t>& list);
+
+/// A vertex to hold for as long as it is where it was then: one that has moved since is another matter.
+struct HeldVertex {
+  std::uint32_t name = 0;
+  Vec3f position;
+};
+
+/// Non-zero for the vertices of a list, which is sorted by name, that are where they were.
+std::vector<std::uint8_t> still_held(const Mesh& mesh, const std::vector<std::uint32_t>& names,
+                                     const std::vector<HeldVertex>& list);
 
 struct RedistributeOptions {
   std::size_t most_triangles = 0;
-  bool keeps_borders = true;       ///< vertices of open borders are the last to go
-  bool fits = true;                ///< split where the level is worst and fit what is new; else collapse alone
-  std::vector<Vec3f> no_collapse;  ///< positions of vertices not to collapse, sorted as before() does,
-  std::vector<Vec3f> no_move;      ///< and of some not to move, nor to split the triangles of, either
+  bool keeps_borders = true;            ///< vertices of open borders are the last to go
+  bool fits = true;                     ///< split where the level is worst and fit what is new; else collapse alone
+  std::vector<HeldVertex> no_collapse;  ///< vertices not to collapse, by name,
+  std::vector<HeldVertex> no_move;      ///< and some not to move, nor to split the triangles of, either
 };
 
 /// Splits triangles where the level is worst, collapses others down to the count, those that are farthest from the
-/// original last, and fits what is new. Errors: those of collapse_edges(), cancelled.
-Result<simplify::TrackedLevel> redistribute_triangles(const FeedbackSource& source, const simplify::TrackedLevel& level,
-                                                      const RedistributeOptions& options, const Task& task);
+/// original last, and fits what is new. New vertices are named from `next_name` on. Errors: those of collapse_edges(),
+/// cancelled.
+Result<NamedLevel> redistribute_triangles(const FeedbackSource& source, const NamedLevel& level,
+                                          const RedistributeOptions& options, std::uint32_t& next_name,
+                                          const Task& task);
 
 }  // namespace lodestone::chain::detail

@@ -212,6 +212,7 @@ Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOp
   LODESTONE_TRY(replayed);
   result.mesh = std::move(replayed->mesh);
   result.origin = std::move(replayed->origin);
+  result.vertex_origin = std::move(replayed->vertex_origin);
   if (options.record_log) result.log = std::move(log);
   return result;
 }

@@ -62,7 +62,8 @@ struct LockCounts {
 
 struct EdgeCollapseResult {
   Mesh mesh;
-  std::vector<std::uint32_t> origin;  ///< for each output triangle, the input triangle that it descends from
+  std::vector<std::uint32_t> origin;         ///< for each output triangle, the input triangle that it descends from
+  std::vector<std::uint32_t> vertex_origin;  ///< for each output vertex, the input vertex that others collapsed into
   /// How far the surface is from the input, about, or what errors of attributes count, whichever is larger; units of
   /// `metric`. The measured error comes from `measure`.
   double estimated_error = 0;

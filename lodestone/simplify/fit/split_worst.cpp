@@ -80,7 +80,7 @@ class Splitter {
     std::vector<Vec3f> before = mesh_.positions;
     std::copy(level_.mesh().positions.begin(), level_.mesh().positions.end(), before.begin());
     detail::carry_attributes(level_.target(), before, mesh_, task_);
-    return {std::move(mesh_), std::move(moved_)};
+    return {std::move(mesh_), std::move(pulled_)};
   }
 
  private:
@@ -194,7 +194,7 @@ class Splitter {
     }
     for (const std::uint32_t t : around_.of(vertex)) touched_[t] = 1;
     mesh_.positions[vertex] = to_float(place - mesh_.offset);
-    moved_.push_back(mesh_.positions[vertex]);
+    pulled_.push_back(vertex);
     return 1;
   }
 
@@ -263,32 +263,30 @@ class Splitter {
   spatial::Bvh tree_;  // of the level as it was
   std::vector<std::uint8_t> touched_;
   std::vector<std::uint8_t> no_move_;  // of the level's vertices
-  std::vector<Vec3f> moved_;
+  std::vector<std::uint32_t> pulled_;
   std::vector<Mix> mixes_;
   std::vector<std::uint32_t> near_;
 };
 
 }  // namespace
 
-SplitResult split_worst(const TrackedLevel& level, double share, std::size_t most, bool keep_borders,
-                        std::span<const std::uint8_t> no_move, std::span<const std::uint8_t> no_split,
-                        const Task& task) {
+SplitResult split_worst(const TrackedLevel& level, const SplitOptions& options, const Task& task) {
   const std::vector<TriangleError> worst = level.worst();
   std::vector<std::uint32_t> order;
   for (std::uint32_t t = 0; t < worst.size(); ++t) {
-    if (worst[t].distance > share * level.max()) order.push_back(t);
+    if (static_cast<double>(worst[t].distance) > options.share * level.max()) order.push_back(t);
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return worst[a].distance > worst[b].distance; });
   if (level.surface().triangles.empty()) return {level.mesh(), {}};
-  Splitter splitter(level, keep_borders, no_move, task);
+  Splitter splitter(level, options.keep_borders, options.no_move, task);
   if (task.cancelled()) return {level.mesh(), {}};
-  for (std::uint32_t v = 0; v < no_split.size(); ++v) {
-    if (no_split[v] != 0) splitter.leave_around(v);
+  for (std::uint32_t v = 0; v < options.no_split.size(); ++v) {
+    if (options.no_split[v] != 0) splitter.leave_around(v);
   }
   std::size_t added = 0;
   for (const std::uint32_t t : order) {
-    if (added >= most) break;
+    if (added >= options.most) break;
     added += splitter.split(t, worst[t]);
   }
   return splitter.finish();

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "lodestone/base/task.h"
@@ -12,20 +11,23 @@
 
 namespace lodestone::simplify {
 
-struct SplitResult {
-  Mesh mesh;
-  std::vector<Vec3f> pulled;  ///< where vertices are now that have been pulled in
+struct SplitOptions {
+  double share = 0;                      ///< of the maximum: triangles whose worst distance is above it are split
+  std::size_t most = 0;                  ///< triangles that may be added
+  bool keep_borders = false;             ///< open borders are neither split nor pulled
+  std::vector<std::uint8_t> no_move{};   ///< one a vertex, non-zero = is not pulled; empty = none
+  std::vector<std::uint8_t> no_split{};  ///< as `no_move`: the triangles around such vertices are not split
 };
 
-/// Adds a vertex where a triangle is worst and puts it on the original there, worst triangles first, those whose worst
-/// distance is above `share` of the maximum, no triangle twice, until `most` triangles have been added: within the
-/// triangle, or on its side where the place is near one. Where it is a vertex, as of those that stick out of bulges,
-/// that goes half way to the original. Attributes are those of the level at the place. O(n log n).
-/// Open borders are split and pulled, too, unless they are to be kept. No face may turn by more than some 70 degrees,
-/// and no vertex is pulled that is `no_move` (one a vertex, non-zero = does not move; empty = none) or lies on a seam or between
-/// materials. Triangles that have a vertex that is `no_split` (as `no_move`) are not split.
-SplitResult split_worst(const TrackedLevel& level, double share, std::size_t most, bool keep_borders,
-                        std::span<const std::uint8_t> no_move, std::span<const std::uint8_t> no_split,
-                        const Task& task);
+struct SplitResult {
+  Mesh mesh;                          ///< the level's vertices keep their numbers, new ones follow
+  std::vector<std::uint32_t> pulled;  ///< vertices that have been pulled in
+};
+
+/// Adds a vertex where a triangle is worst and puts it on the original there, worst triangles first, no triangle twice:
+/// within the triangle, or on its side where the place is near one. Where it is a vertex, as of those that stick out of
+/// bulges, that goes half way to the original. Attributes are those of the level at the place. No face may turn by more
+/// than some 70 degrees, and no vertex is pulled that lies on a seam or between materials. O(n log n).
+SplitResult split_worst(const TrackedLevel& level, const SplitOptions& options, const Task& task);
 
 }  // namespace lodestone::simplify

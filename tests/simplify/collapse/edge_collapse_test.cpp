@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "lodestone/base/random.h"
 #include "lodestone/core/topology.h"
@@ -110,6 +111,22 @@ TEST_P(EdgeCollapseLaws, origins_name_triangles_of_the_input) {
 
 INSTANTIATE_TEST_SUITE_P(AllShapes, EdgeCollapseLaws, ::testing::ValuesIn(test::small_shapes()),
                          [](const auto& param) { return param.param.name; });
+
+// By what the log says became of each input vertex, not by where it lies.
+TEST_P(EdgeCollapseLaws, vertex_origins_name_what_others_collapsed_into) {
+  const Mesh in = GetParam().make();
+  const EdgeCollapseResult out = collapse(in, in.triangles.size() / 3 + 1);
+  ASSERT_EQ(out.vertex_origin.size(), out.mesh.vertex_count());
+  EXPECT_TRUE(std::is_sorted(out.vertex_origin.begin(), out.vertex_origin.end()));
+  const std::size_t count = out.log->prefix_for(in.triangles.size() / 3 + 1);
+  std::vector<std::uint32_t> fate(in.vertex_count());
+  std::iota(fate.begin(), fate.end(), 0U);
+  for (std::size_t i = count; i-- > 0;) fate[out.log->collapses[i].removed] = fate[out.log->collapses[i].kept];
+  for (std::size_t t = 0; t < out.mesh.triangles.size(); ++t) {
+    const Triangle now = out.mesh.vertices_of(t), then = in.vertices_of(out.origin[t]);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(out.vertex_origin[now[k]], fate[then[k]]);
+  }
+}
 
 TEST(EdgeCollapse, many_ranges_give_the_same_bytes_and_stay_closed) {
   const Mesh in = test::torus(160);  // 51,200 triangles: several ranges of vertices

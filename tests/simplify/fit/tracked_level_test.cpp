@@ -176,7 +176,7 @@ TEST(SplitWorst, adds_triangles_and_keeps_the_surface_whole) {
   const Mesh original = bumpy(60);
   const FitTarget target(original);
   const TrackedLevel level(target, collapsed(original, 700), {});
-  const SplitResult split = split_worst(level, 0.5, 40, false, {}, {}, {});
+  const SplitResult split = split_worst(level, {.share = 0.5, .most = 40}, {});
   EXPECT_GT(split.mesh.triangles.size(), level.mesh().triangles.size());
   EXPECT_LE(split.mesh.triangles.size(), level.mesh().triangles.size() + 41);
   const Topology t = topology_of(split.mesh);
@@ -189,7 +189,7 @@ TEST(SplitWorst, of_neighbours_that_have_been_cut) {
   const FitTarget target(original);
   for (const std::size_t triangles : {200U, 700U, 2000U}) {
     const TrackedLevel level(target, collapsed(original, triangles), {});
-    const SplitResult split = split_worst(level, 0, level.mesh().triangles.size(), false, {}, {}, {});
+    const SplitResult split = split_worst(level, {.most = level.mesh().triangles.size()}, {});
     EXPECT_GT(split.mesh.triangles.size(), level.mesh().triangles.size());
     const Topology t = topology_of(split.mesh);
     EXPECT_TRUE(t.closed && t.manifold);
