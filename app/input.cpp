@@ -45,9 +45,9 @@ Result<Model> read_input(const fs::path& path, const Console& console, Task task
 namespace {
 
 // True if both names are the same file, or would be.
-bool same_file(const fs::path& a, const fs::path& b) {
+bool same_place(const fs::path& a, const fs::path& b) {
+  if (same_file(a, b)) return true;
   std::error_code error;
-  if (fs::equivalent(a, b, error) && !error) return true;
   return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
 }
 
@@ -55,14 +55,14 @@ bool same_file(const fs::path& a, const fs::path& b) {
 bool would_overwrite(const fs::path& output, const fs::path& input) {
   const std::string pattern = output.filename().string();
   const std::size_t mark = pattern.find("{level}");
-  if (mark == std::string::npos) return same_file(output, input);
+  if (mark == std::string::npos) return same_place(output, input);
   const std::string name = input.filename().string();
   const std::string_view head = std::string_view(pattern).substr(0, mark);
   const std::string_view tail = std::string_view(pattern).substr(mark + std::string_view("{level}").size());
   if (name.size() <= head.size() + tail.size() || !name.starts_with(head) || !name.ends_with(tail)) return false;
   const std::string_view middle = std::string_view(name).substr(head.size(), name.size() - head.size() - tail.size());
   return middle.find_first_not_of("0123456789") == std::string_view::npos &&
-         same_file(output.parent_path() / name, input);
+         same_place(output.parent_path() / name, input);
 }
 
 }  // namespace

@@ -13,16 +13,9 @@
 namespace lodestone::app {
 namespace {
 
-struct NamedUnit {
-  const char* name;
-  double metres;
-};
-constexpr NamedUnit kUnits[] = {{"um", 1e-6}, {"mm", 1e-3},   {"cm", 1e-2},   {"dm", 0.1},
-                                {"m", 1.0},   {"km", 1000.0}, {"in", 0.0254}, {"ft", 0.3048}};
-
 std::vector<std::string> unit_names() {
   std::vector<std::string> names;
-  for (const NamedUnit& unit : kUnits) names.emplace_back(unit.name);
+  for (const LengthUnit& unit : kLengthUnits) names.emplace_back(unit.name);
   return names;
 }
 
@@ -288,8 +281,8 @@ Result<std::string> given_target(const Arguments& arguments, const std::vector<s
 }
 
 std::string unit_name(double meters_per_unit) {
-  for (const NamedUnit& unit : kUnits) {
-    if (std::abs(meters_per_unit - unit.metres) <= 1e-9 * unit.metres) return unit.name;
+  for (const LengthUnit& unit : kLengthUnits) {
+    if (std::abs(meters_per_unit - unit.metres) <= 1e-9 * unit.metres) return std::string(unit.name);
   }
   return meters_per_unit > 0 ? fmt::format("{} m", meters_per_unit) : std::string();
 }
@@ -298,7 +291,7 @@ Result<LengthRules> length_rules(const Arguments& arguments) {
   LengthRules rules;
   rules.absolute = arguments.has("--absolute");
   const std::string name = arguments.text("--unit");
-  for (const NamedUnit& unit : kUnits) {
+  for (const LengthUnit& unit : kLengthUnits) {
     if (name == unit.name) rules.meters_per_unit = unit.metres;
   }
   return rules;

@@ -252,8 +252,7 @@ Result<BuildJobs> build_jobs(const Arguments& arguments, const VolumeRequest& vo
   LODESTONE_TRY(inputs);
   if (into_folder) all.folder = output;
   for (const std::string& word : arguments.inputs) {
-    std::error_code ignored;
-    if (into_folder && is_folder(word) && fs::equivalent(word, output, ignored)) {
+    if (into_folder && is_folder(word) && same_file(word, output)) {
       return fail(ErrorCode::bad_argument, "is the folder of the inputs, whose results would be inputs the next time",
                   output, "name another folder for -o");
     }

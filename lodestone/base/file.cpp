@@ -124,6 +124,11 @@ Result<void> InputFile::seek(std::uint64_t offset) {
   return {};
 }
 
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code error;
+  return std::filesystem::equivalent(a, b, error) && !error;
+}
+
 std::string extension_of(const std::filesystem::path& path) { return lower_case(path.extension().string()); }
 
 Result<std::string> read_file(const std::filesystem::path& path) {

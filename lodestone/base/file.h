@@ -43,6 +43,9 @@ class InputFile {
 /// The ending of a name in lower case, with its dot: ".ply"; empty without one.
 std::string extension_of(const std::filesystem::path& path);
 
+/// Whether both names lead to one existing file.
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
 /// The whole file. Errors: cannot_read.
 Result<std::string> read_file(const std::filesystem::path& path);
 

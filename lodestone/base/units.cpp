@@ -30,15 +30,9 @@ Result<Length> parse_length(std::string_view text) {
   if (!read) return bad("is not a length");
   const auto [number, unit] = *read;
   if (number < 0) return bad("is not a finite length of at least 0");
-  struct Unit {
-    std::string_view name;
-    double metres;
-  };
-  constexpr Unit kUnits[] = {{"um", 1e-6}, {"mm", 1e-3},   {"cm", 1e-2},   {"dm", 0.1},
-                             {"m", 1.0},   {"km", 1000.0}, {"in", 0.0254}, {"ft", 0.3048}};
   if (unit.empty()) return Length{number, Length::Kind::relative};
   if (unit == "%") return Length{number / 100.0, Length::Kind::relative};
-  for (const Unit& u : kUnits) {
+  for (const LengthUnit& u : kLengthUnits) {
     if (unit == u.name) return Length{number * u.metres, Length::Kind::metres};
   }
   return bad("has a unit we don't know");

@@ -10,6 +10,14 @@
 
 namespace lodestone {
 
+/// A unit of length that users write.
+struct LengthUnit {
+  std::string_view name;
+  double metres;
+};
+inline constexpr LengthUnit kLengthUnits[] = {{"um", 1e-6}, {"mm", 1e-3},   {"cm", 1e-2},   {"dm", 0.1},
+                                              {"m", 1.0},   {"km", 1000.0}, {"in", 0.0254}, {"ft", 0.3048}};
+
 /// A length as given on a command line. Relative: a fraction of the bounding box's diagonal ("0.001", "0.1%").
 /// Absolute: metres ("2mm" = 0.002), to be turned into model units by the model's own unit.
 struct Length {

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <utility>
 
+#include "lodestone/base/index_table.h"
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/random.h"
 #include "lodestone/core/validate.h"
@@ -94,17 +95,12 @@ std::vector<std::uint32_t> representatives(std::size_t n, const Task& task, Hash
   std::vector<std::uint32_t> representative(n);
   parallel_for(kBuckets, 1, task, [&](std::size_t bucket, std::size_t, std::size_t) {
     const std::size_t first = bucket_first[bucket], count = bucket_first[bucket + 1] - first;
-    const std::size_t size = std::bit_ceil(2 * count + 1);
-    std::vector<std::uint32_t> table(size, kNone);
+    IndexTable table(count);
     for (std::size_t k = 0; k < count; ++k) {
       const std::uint32_t item = order[first + k];
-      std::size_t slot = hashes[item] & (size - 1);
-      while (table[slot] != kNone &&
-             !(hashes[table[slot]] == hashes[item] && equal(std::size_t{table[slot]}, std::size_t{item}))) {
-        slot = (slot + 1) & (size - 1);
-      }
-      if (table[slot] == kNone) table[slot] = item;
-      representative[item] = table[slot];
+      representative[item] = table.find_or_add(hashes[item], item, [&](std::size_t other) {
+        return hashes[other] == hashes[item] && equal(other, std::size_t{item});
+      });
     }
   });
   return representative;

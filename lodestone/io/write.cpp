@@ -41,11 +41,6 @@ fs::path level_file(const fs::path& pattern, std::size_t level) {
   return pattern.parent_path() / name.replace(mark, kLevelMark.size(), std::to_string(level));
 }
 
-bool same_file(const fs::path& a, const fs::path& b) {
-  std::error_code error;
-  return fs::equivalent(a, b, error) && !error;
-}
-
 bool is_there(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(fs::symlink_status(path, ignored));

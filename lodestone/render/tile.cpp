@@ -4,6 +4,7 @@
 // Cost     small triangles: some 30 operations and 15 a cell that their box touches
 #include <algorithm>
 
+#include "lodestone/math/float4.h"
 #include "lodestone/render/holes_detail.h"
 #include "lodestone/render/tile_detail.h"
 
@@ -11,10 +12,8 @@ namespace lodestone::render::detail {
 
 namespace {
 
-using Int4 = std::int32_t __attribute__((vector_size(16)));
 using UInt4 = std::uint32_t __attribute__((vector_size(16)));
 using Long2 = std::int64_t __attribute__((vector_size(16)));
-using Float4 = float __attribute__((vector_size(16)));
 
 template <class Vector, class T>
 Vector splat(T x) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lodestone/base/parallel.h"
+#include "lodestone/math/float4.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/spatial/thin_pieces_detail.h"
 
@@ -13,10 +14,6 @@ namespace lodestone::spatial {
 namespace {
 
 constexpr std::size_t kChunk = 4096;
-using Float4 = float __attribute__((vector_size(16)));
-using Int4 = int __attribute__((vector_size(16)));
-
-Float4 load(const float* p) { return *reinterpret_cast<const Float4*>(p); }
 
 // A bit for each of four comparisons.
 unsigned bits_of(Int4 holds) {

@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "lodestone/math/box.h"
+#include "lodestone/math/float4.h"
 #include "lodestone/math/triangle.h"
 #include "lodestone/spatial/hilbert.h"
 
 namespace lodestone::spatial {
 
 namespace {
-
-using Float4 = float __attribute__((vector_size(16)));
 
 // How much farther to look than the group before had to.
 constexpr double kFarther = 1.6;
@@ -23,18 +22,17 @@ constexpr float kRounding = 4e-6F;
 // Where twice the area is less than this share of the longest side squared, single precision does not know the plane.
 constexpr float kSliver = 1e-2F;
 
-Float4 all(float f) { return Float4{f, f, f, f}; }
 Float4 smaller(Float4 a, Float4 b) { return a < b ? a : b; }
 Float4 clamped(Float4 a) {
-  const Float4 positive = a > 0.0F ? a : all(0);
-  return positive < 1.0F ? positive : all(1);
+  const Float4 positive = a > 0.0F ? a : fill(0);
+  return positive < 1.0F ? positive : fill(1);
 }
 
 struct Vec4 {
   Float4 x, y, z;
 };
-Vec4 operator-(const Vec4& p, Vec3f a) { return {p.x - all(a.x), p.y - all(a.y), p.z - all(a.z)}; }
-Float4 dot(const Vec4& p, Vec3f a) { return p.x * all(a.x) + p.y * all(a.y) + p.z * all(a.z); }
+Vec4 operator-(const Vec4& p, Vec3f a) { return {p.x - fill(a.x), p.y - fill(a.y), p.z - fill(a.z)}; }
+Float4 dot(const Vec4& p, Vec3f a) { return p.x * fill(a.x) + p.y * fill(a.y) + p.z * fill(a.z); }
 Float4 length_sq(const Vec4& p) { return p.x * p.x + p.y * p.y + p.z * p.z; }
 
 // One triangle, made ready for many points.
@@ -72,14 +70,14 @@ Ready ready(const std::array<Vec3d, 3>& corners, Vec3d middle, float reach) {
 
 // Squared distances of four points to a triangle.
 Float4 distance_sq(const Ready& t, const Vec4& p) {
-  Float4 to_sides = all(3e38F);
+  Float4 to_sides = fill(3e38F);
   auto inside = to_sides > 0.0F;
-  Float4 height = all(0);
+  Float4 height = fill(0);
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec4 d = p - t.corner[k];
     if (k == 0) height = dot(d, t.unit_normal);
-    const Float4 s = clamped(dot(d, t.side[k]) * all(t.inverse_square[k]));
-    const Vec4 off{d.x - s * all(t.side[k].x), d.y - s * all(t.side[k].y), d.z - s * all(t.side[k].z)};
+    const Float4 s = clamped(dot(d, t.side[k]) * fill(t.inverse_square[k]));
+    const Vec4 off{d.x - s * fill(t.side[k].x), d.y - s * fill(t.side[k].y), d.z - s * fill(t.side[k].z)};
     to_sides = smaller(to_sides, length_sq(off));
     inside &= dot(d, t.inner[k]) >= 0.0F;
   }
@@ -169,14 +167,14 @@ float ClosestBatch::test_near(const float (&coordinates)[3][kGroup], Vec3d middl
   for (std::size_t h = 0; h < kGroup / 4; ++h) {
     const auto four = [&](const float* v) { return Float4{v[4 * h], v[4 * h + 1], v[4 * h + 2], v[4 * h + 3]}; };
     p[h] = {four(coordinates[0]), four(coordinates[1]), four(coordinates[2])};
-    highest[h] = all(3e38F);
+    highest[h] = fill(3e38F);
   }
   for (std::size_t n = 0; n < near_.size(); ++n) {
     const Ready t = ready(tree_.surface().corners(near_[n]), middle, reach);
     for (std::size_t h = 0; h < kGroup / 4; ++h) {
       const Float4 d = root(distance_sq(t, p[h]));
-      highest[h] = smaller(highest[h], d + all(t.rounding));
-      const Float4 low = t.sliver ? all(0) : d - all(t.rounding);
+      highest[h] = smaller(highest[h], d + fill(t.rounding));
+      const Float4 low = t.sliver ? fill(0) : d - fill(t.rounding);
       for (std::size_t i = 0; i < 4; ++i) lowest_[n][4 * h + i] = low[i];
     }
   }

@@ -23,7 +23,6 @@ Vec4 cross(const Vec4& a, const Vec4& b) {
 Float4 dot(const Vec4& a, const Vec4& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Vec4 operator-(const Vec4& a, const Vec4& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 Vec4 scaled(const Vec4& a, Float4 s) { return {a.x * s, a.y * s, a.z * s}; }
-Float4 fill(float f) { return Float4{f, f, f, f}; }
 
 // Four leaves side by side.
 struct Leaves {

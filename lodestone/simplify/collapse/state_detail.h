@@ -14,12 +14,10 @@
 #include "lodestone/base/task.h"
 #include "lodestone/core/collapse_log.h"
 #include "lodestone/core/mesh.h"
+#include "lodestone/math/float4.h"
 #include "lodestone/simplify/collapse/edge_collapse.h"
 
 namespace lodestone::simplify::detail {
-
-using Float4 = float __attribute__((vector_size(16)));
-using Int4 = int __attribute__((vector_size(16)));
 
 /// Rows a, b, c, d become columns.
 inline void transpose(Float4& a, Float4& b, Float4& c, Float4& d) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 
+#include "lodestone/base/index_table.h"
 #include "lodestone/base/parallel.h"
 #include "lodestone/base/random.h"
 #include "lodestone/math/box.h"
@@ -191,22 +192,13 @@ std::vector<std::uint32_t> same_triangles(const spatial::Surface& of, const spat
     }
     return h;
   };
-  std::size_t size = 16;
-  while (size < 2 * in.triangles.size()) size *= 2;
-  std::vector<std::uint32_t> table(size, kNone);
+  IndexTable table(in.triangles.size());
   for (std::uint32_t t = 0; t < in.triangles.size(); ++t) {
-    std::size_t at = hash(in, t) & (size - 1);
-    while (table[at] != kNone) at = (at + 1) & (size - 1);
-    table[at] = t;
+    table.find_or_add(hash(in, t), t, [&](std::size_t other) { return in.corners(other) == in.corners(t); });
   }
   std::vector<std::uint32_t> same(of.triangles.size(), kNone);
   for (std::size_t t = 0; t < of.triangles.size(); ++t) {
-    for (std::size_t at = hash(of, t) & (size - 1); table[at] != kNone; at = (at + 1) & (size - 1)) {
-      if (in.corners(table[at]) == of.corners(t)) {
-        same[t] = table[at];
-        break;
-      }
-    }
+    same[t] = table.find(hash(of, t), [&](std::size_t other) { return in.corners(other) == of.corners(t); });
   }
   return same;
 }
