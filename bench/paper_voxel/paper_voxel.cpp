@@ -1,4 +1,4 @@
-// Tables 3-1 to 3-6 of paper 000 with its resolutions, by its method (EdgeRatio on one solid) and by ours (shares of
+// Tables 3-1 to 3-6 of [voxel-lod] with its resolutions, by its method (EdgeRatio on one solid) and by ours (shares of
 // voxels, Marching Cubes, vertices on the model), with the error that it does not give.
 //   paper_voxel SPHERE COW BUDDHA DRAGON STATUE      prints Markdown; one thread, medians of five
 #include <fmt/format.h>

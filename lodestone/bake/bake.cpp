@@ -1,11 +1,18 @@
 // How textures are baked: every texel looks through the target at the source.
 //
+// Problem: a surface made anew has neither the colours nor the relief of its source. Method: a texel stands for a point
+// of the target and shows what the source has at the place that BakeSource::find() gives for it; docs/papers/baking.md.
 // 1. set_frames(): the target gets the unit normals and tangents that its normal map will refer to.
-// 2. detail::texel_owners(): which triangle covers each texel, or lies beside it within what a bilinear filter reads.
-// 3. Tile by tile, on all threads: a texel's points on the target (`samples_per_side` squared of them) are looked up in the source
-//    at once (BakeSource::find()); their mean colour, in linear light, and their mean normal, in the target's
-//    interpolated frame, become the texel. Each tile writes texels of its own, so threads change no byte.
-// 4. detail::dilate(): colours are carried on around the charts, so that mipmaps don't bleed.
+// 2. Target, normal_texel(): points and frames of the target as a viewer interpolates them, and a normal
+//    in such a frame.
+// 3. Baker::bake(): a tile of texels. All points of its texels (`samples_per_side` squared each) are looked up in the
+//    source at once; the mean colour, in linear light, and the mean normal become the texel.
+// 4. bake_textures(): detail::texel_owners() tells which triangle covers each texel, or lies beside it within what a
+//    bilinear filter reads; then all tiles; then detail::dilate() carries colours on around the charts, so that smaller
+//    versions of the texture don't mix in the background.
+// Invariants: positions, triangles and texture coordinates of the target stay. Each tile writes texels of its own and
+// distances are joined in the order of tiles, so threads change no byte.
+// Cost: O(texels · samples_per_side² · log source), 24 bytes a texel.
 #include "lodestone/bake/bake.h"
 
 #include <fmt/format.h>

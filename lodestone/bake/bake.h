@@ -34,9 +34,9 @@ struct Baked {
 /// space and has TEXCOORD_0, the origin at the image's top left, within [0, 1] and without overlaps as make_atlas()
 /// makes it; of triangles that overlap the first wins. Texels up to one and a half beside a chart, which bilinear
 /// filters read, are taken at the chart's nearest point; farther ones are copies. Where the source's normal points
-/// against the target's, the target's is taken. Same bytes for any thread count. O(texels x samples_per_side squared x log
-/// source), 24 bytes a texel. Errors: empty (no triangle), bad_argument (no texture coordinates, a size out of range;
-/// those of validate(), of the target), cancelled.
+/// against the target's, the target's is taken. Same bytes for any thread count. O(texels x samples_per_side squared x
+/// log source), 24 bytes a texel. Errors: empty (no triangle), bad_argument (no texture coordinates, a size out of
+/// range; those of validate(), of the target), cancelled.
 Result<Baked> bake_textures(const Mesh& target, const BakeSource& source, const BakeOptions& options = {},
                             Task task = {});
 

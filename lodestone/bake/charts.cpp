@@ -1,3 +1,19 @@
+// Charts: a surface cut into pieces that are nearly flat, to be laid out in a texture.
+//
+// Method: each triangle is a chart at first; of all pairs of neighbours the one with the lowest cost is merged, again
+// and again (M. Garland, A. Willmott and P. Heckbert, Hierarchical Face Clustering on Polygonal Surfaces, 2001
+// [garland-2001]). The cost is the area of a disc with the merged chart's perimeter, which keeps charts compact, plus
+// kBend times how far the chart is from flat: its area less the length of its normals summed by area (D. Cohen-Steiner,
+// P. Alliez and M. Desbrun, Variational Shape Approximation, 2004 [cohen-steiner-2004]).
+// 1. Clustering(): a chart a triangle, with the length of the border that it has with each neighbour.
+// 2. push(): queues a pair by its cost, unless it is too far from flat.
+// 3. lowest_cosine(), allowed(): whether every triangle of both faces the common axis, by bounds that are known of
+//    charts and of patches of triangles, and by the triangles where these don't suffice.
+// 4. join_sides(), join(): merges two charts; their versions put older entries of the queue out of date.
+// 5. merge(): until the queue is empty. make_charts() calls it twice, the second time with less strict limits for
+//    charts smaller than 1/250 of the whole.
+// Invariants: a chart is connected over sides, and all its triangles face its axis. One thread; the order of merges
+// depends on the mesh alone. Cost: O(n log n).
 #include <algorithm>
 #include <cmath>
 
@@ -42,7 +58,7 @@ struct Patch {
 };
 constexpr std::uint32_t kMostOfPatch = 64;
 
-// Two charts that may be merged; out of date once one of them was.
+// Two charts that may be merged; out of date once either has been merged.
 struct Candidate {
   std::uint32_t a, b, version_a, version_b;
 };
@@ -125,7 +141,7 @@ void Clustering::push(std::uint32_t a, const ChartBorder& side, const Limits& li
               a < b ? Candidate{a, b, first.version, second.version} : Candidate{b, a, second.version, first.version});
 }
 
-// Of the patch's triangles with the axis; stops at one below `enough`.
+// The lowest cosine between triangles of the patch and the axis; stops at one below `enough`.
 double Clustering::lowest_cosine(const Patch& patch, Vec3d axis, double enough) const {
   double lowest = 1;
   for (std::uint32_t t = patch.first; t != kNone && lowest >= enough; t = next_[t]) {
@@ -134,7 +150,7 @@ double Clustering::lowest_cosine(const Patch& patch, Vec3d axis, double enough) 
   return lowest;
 }
 
-// At least that of the chart's triangles with the axis if it is `enough` or more, else below it.
+// A cosine that no triangle of the chart falls below, if that is `enough` or more; else something below `enough`.
 double Clustering::lowest_cosine(const Chart& chart, Vec3d axis, double enough) const {
   double lowest = 1;
   for (std::uint32_t p = chart.first; p != kNone && lowest >= enough; p = patches_[p].next) {
@@ -145,7 +161,7 @@ double Clustering::lowest_cosine(const Chart& chart, Vec3d axis, double enough) 
   return lowest;
 }
 
-// Whether all triangles of both face their common axis. First by what is known of each, then by looking.
+// Whether all triangles of both face their common axis: by what is known of the charts, else triangle by triangle.
 bool Clustering::allowed(const Chart& a, const Chart& b, double min_cosine, double& cosine) const {
   const Vec3d axis = normalized(a.normal + b.normal);
   cosine = 1;
@@ -277,7 +293,7 @@ std::vector<std::uint32_t> make_charts(const Mesh& mesh, const Neighbors& neighb
   Clustering clustering(mesh, neighbors);
   const double all = clustering.area();
   clustering.merge({0.2, 0.4, all * 2}, task);
-  // What noise and sharp bends have left over goes to a neighbour, though it may be seen more from the side there.
+  // Small charts that noise and sharp bends have left over go to a neighbour, to whose axis they may be more tilted.
   clustering.merge({0.4, 0.2, all * 0.004}, task);
   return clustering.numbers();
 }

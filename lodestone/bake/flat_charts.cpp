@@ -1,3 +1,17 @@
+// Charts laid out in the plane so that nothing overlaps.
+//
+// Method: a chart is seen along its axis, the mean of its normals by area. All its triangles face the axis, so none is
+// turned over; but parts may cover each other, and these are split off. See docs/papers/baking.md.
+// 1. hull_of(), best_direction(): the box of least area around a chart lies along a side of its convex
+//    hull (Andrew's monotone chain).
+// 2. Flattener::flatten(): lays out a chart, then the connected pieces that had to be split off, and so on.
+// 3. seen_along(), rim_of(), place(): if the rim shows that nothing is covered twice (rim_is_simple() in overlap.cpp),
+//    the whole chart stays; else grow() adds triangles from the middle outward and leaves out what would cover one.
+// 4. finish(): turns the chart upright, moves it to the origin and keeps its outline.
+// 5. flatten_charts(): all charts, on all threads.
+// Invariants: triangles wind counter-clockwise and no two of a chart overlap; each triangle comes out once. Charts are
+// independent and keep their order: the same for any thread count. Cost: about linear where the triangles of a chart
+// are of a size, as grow() looks for what is near in a grid of cells.
 #include <algorithm>
 #include <cmath>
 #include <deque>

@@ -22,9 +22,9 @@ struct FlatChart {
   double area = 0;                               ///< of the triangles, flat
 };
 
-/// Lays out each chart; one that would overlap itself is split. `chart`: one a triangle, `count` of them; charts that
-/// were split off are appended behind the one they come from. Same result for any thread count. O(n) where triangles of
-/// a chart are of a size.
+/// Lays out each chart; one that would overlap itself is split. `chart` has the number of each triangle's chart; what
+/// was split off follows the chart that it comes from. Same result for any thread count. About linear where triangles
+/// of a chart are of a size.
 std::vector<FlatChart> flatten_charts(const Mesh& mesh, const Neighbors& neighbors,
                                       const std::vector<std::uint32_t>& chart, const Task& task);
 

@@ -1,3 +1,17 @@
+// Packing of flat charts into a square texture at about the largest scale that fits.
+//
+// Method: "Tetris packing" (B. Lévy et al., Least Squares Conformal Maps, 2002 [levy-2002]). Charts come by falling
+// height; each goes where it leaves least room unused between its lower outline and the skyline of those already there.
+// Both are heights by column, so charts nest into each other's true outlines.
+// 1. Packer(): the order of the charts, and at most kMostColumns columns of whole texels.
+// 2. at_scale(): places all charts at one scale, or tells that they don't fit.
+// 3. make_profile(): a chart's lower and upper outline by column, with half a gutter all around.
+// 4. place(): tries four orientations at every column. The cost of a place is the room left unused below the chart,
+//    plus `height_` times how high it reaches.
+// 5. pack_charts(): the largest scale that fits, by bisection; then, unless there are many charts, whether another
+//    weight of the height (kHeights) allows a larger one.
+// Invariants: any two charts are a gutter apart, and half of one from the border. One thread; of equal places the first
+// is taken, and the sort is stable. Cost: for each scale tried, charts x columns x a chart's own columns.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,9 +25,9 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostColumns = 512;
-constexpr std::size_t kMany = 4096;  // charts, from which on time counts more than the last per cent of the scale
+constexpr std::size_t kMany = 4096;  // with more charts, time counts more than the last per cent of the scale
 constexpr double kPrecision = 1.004, kPrecisionOfMany = 1.03;  // of the scale
-constexpr double kStep = 1.01;                                 // by which other ways of placing have to be better
+constexpr double kStep = 1.01;                                 // by which other weights of the height must be better
 // What lying high counts beside room left unused below; which serves best differs from model to model.
 constexpr std::array<double, 4> kHeights{2, 0.5, 1, 8};
 

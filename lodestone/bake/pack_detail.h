@@ -28,7 +28,8 @@ struct Packing {
 /// Places the charts in a square of `size` texels, `gutter` texels between any two and half of it along the border, at
 /// about the largest scale that fits: highest charts first, each where it leaves least room unused between it and the
 /// skyline of those that lie there, both with their true outlines ("Tetris packing", Lévy et al., "Least squares
-/// conformal maps", 2002); the scale by bisection. Nothing where the gutters alone leave no room. O(charts x columns).
+/// conformal maps", 2002); the scale by bisection. Nothing where the gutters alone leave no room.
+/// O(charts x columns x columns of a chart) for each scale tried.
 std::optional<Packing> pack_charts(const std::vector<FlatChart>& charts, std::uint32_t size, double gutter,
                                    const Task& task);
 

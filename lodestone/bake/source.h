@@ -18,8 +18,8 @@ namespace lodestone::bake {
 /// Cheap to copy; many threads may ask at once. Memory: about 100 bytes a triangle, 36 more without a normal stream.
 class BakeSource {
  public:
-  /// The model must outlive the source. O(n log n). Errors: bad_argument (those of validate()), empty,
-  /// unsupported, cancelled.
+  /// The model must outlive the source. O(n log n). Errors: bad_argument (those of validate()), empty, unsupported,
+  /// cancelled.
   static Result<BakeSource> create(const Model& model, Task task = {});
 
   /// For each point, world space, the place of the source that it takes its attributes from: the closest one. Where

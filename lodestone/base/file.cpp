@@ -1,9 +1,18 @@
 // Files that are whole or not there.
 //
-// Reading takes regular files only: a device would never end. Writing goes to a hidden file beside the output, which is
-// renamed over it by commit(), or removed with the object. The output's place is settled when it is created: a symbolic
-// link is followed, a write-protected file refused, permissions kept. Outputs of several files are gathered in a
-// StagingFolder; its commit() moves older files aside first and, where a move fails, puts all of them back.
+// Problem: a run may fail, be interrupted, or run out of disk; no half file may be left and no older file be lost.
+// Method: outputs are written nameless or under a hidden name beside their place and renamed over it.
+// 1. InputFile, read_file(): regular files only, as a device would never end and a pipe without a writer would block.
+// 2. output_place(): where an output goes. Symbolic links are followed; directories and
+//    write-protected files are refused.
+// 3. OutputFile: buffered writing; errors are kept and told by commit(), which renames. Without commit() nothing is
+//    left. Permissions of an older file are kept.
+// 4. StagingFolder: outputs of several files. plan_moves() finds out what can be known before anything is moved,
+//    bring_beside() brings new files beside places in other folders, put_in_place() keeps each older file under a
+//    second name, and restore() puts these back where a move fails.
+// Invariants: a name that led to a file leads to a whole one, old or new, at any time, where the file system knows
+// second names of files. Files are moved in the order of their names. POSIX calls are used where std::filesystem has no
+// equal (O_TMPFILE, link, permissions).
 #include "lodestone/base/file.h"
 #include "lodestone/base/text.h"
 

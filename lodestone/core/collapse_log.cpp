@@ -1,11 +1,16 @@
-// Any level from the log of one edge collapse (the idea of paper 001's progressive mesh: a record of collapses).
+// Any level from the log of one edge-collapse run.
 //
+// Source: the idea of a progressive mesh, [progressive-mesh], section 2.2: a record of collapses is all levels at once.
+// Here a level is not reached step by step but replayed from the original in a few passes over flat arrays.
 // replay() of the first n collapses:
 // 1. fates_after(): backwards over the prefix, where each vertex and wedge ends up; the fate of the kept one is known
 //    before that of the removed one is asked for, so one step finds it.
-// 2. Triangles whose corners still differ stay, with their wedges replaced.
-// 3. move_positions() and blend_attributes(): forwards, what each collapse did to position and wedges.
+// 2. keep_triangles(): triangles whose corners still differ stay, with their wedges replaced.
+// 3. move_positions(), blend_attributes(): forwards, what each collapse did to position and wedges.
 // 4. compact(): vertices and wedges that are used, in their original order.
+// 5. repair_corner_normals() (corner_normals.h): normals of corners whose surroundings changed.
+// Invariants: mesh and log stay as they are; triangles, vertices and wedges keep their order, so a level depends on
+// mesh, log and n alone. Cost: O(mesh + n).
 #include "lodestone/core/collapse_log.h"
 
 #include <fmt/format.h>
@@ -97,7 +102,7 @@ void keep_triangles(const Mesh& mesh, const CollapseLog& log, const Fates& fates
   });
 }
 
-// Numbers what is used in ascending order, renames it in `names` and returns the list of what is kept.
+// Numbers what is used in ascending order: writes the numbers to `new_name` and returns the list of what is kept.
 std::vector<std::uint32_t> compact_names(std::size_t n, const std::vector<std::uint8_t>& used,
                                          std::vector<std::uint32_t>& new_name) {
   std::vector<std::uint32_t> kept;

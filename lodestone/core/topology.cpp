@@ -1,3 +1,15 @@
+// Counts that describe a mesh's connectivity: edges by their triangles, manifoldness, pieces, doubled faces.
+//
+// Everything goes by vertices (positions), so that seams of attributes don't count, as an independent checker would
+// have it. Triangles that repeat a vertex have no edges.
+// 1. count_duplicates(): faces with the three vertices of an earlier one, by sorting.
+// 2. same_faces(), without_doubles(): a sheet whose faces are all listed twice has no edge with one triangle, and is
+//    open all the same. Its border shows once doubled faces are taken for one, or for none.
+// 3. is_manifold_vertex(): whether the edges opposite to a vertex form one path or one ring.
+// 4. topology_of(): triangles, then edges (boundary, non-manifold, walked twice the same way),
+//    then vertices, then pieces.
+// Invariants: the mesh stays as it is; counts do not depend on the order of its triangles or on threads.
+// Cost: O(n log n).
 #include "lodestone/core/topology.h"
 
 #include <algorithm>
@@ -69,9 +81,9 @@ std::vector<SameFaces> same_faces(const Mesh& mesh, const Parts& parts, const Ta
   return out;
 }
 
-// A sheet whose faces are all listed twice has no edge with one triangle, and is open all the same. What is left when
-// faces with the same vertices count once, and those that lie back to back not at all (flaps on a closed surface), tells;
-// of a part that is nothing but faces back to back each counts once.
+// A sheet whose faces are all listed twice has no edge with one triangle, and is open all the same. So faces with the
+// same vertices count once here, and those that lie back to back (flaps on a closed surface) not at all; but in a part
+// that is nothing but faces back to back each counts once.
 Mesh without_doubles(const Mesh& mesh, const Parts& parts, const Task& task) {
   const std::vector<SameFaces> faces = same_faces(mesh, parts, task);
   std::vector<std::uint8_t> is_sheet(parts.count, 1);

@@ -22,7 +22,7 @@ struct Topology {
   std::uint64_t nonmanifold_vertices = 0;  ///< whose opposite edges are not one path or ring
   std::uint64_t components = 0;            ///< pieces connected through shared vertices
   /// Edges with one triangle once doubled faces are told apart from sheets: faces with the same three vertices count
-  /// once, or not at all where as many face either way and their part has other faces. 0 where there is no doubled face.
+  /// once, or not at all where as many face either way and their part has other faces. 0 without doubled faces.
   std::uint64_t hidden_boundary_edges = 0;
   bool closed = false;    ///< at least one triangle, no boundary edge, and none hidden by doubled faces
   bool manifold = false;  ///< at least one triangle, no non-manifold edge or vertex

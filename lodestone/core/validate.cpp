@@ -1,3 +1,14 @@
+// Checks what must hold for meshes, models, ladders, points, volumes and collapse logs; validate.h says what that is.
+//
+// Problem: files and hand-made structures may hold anything, and an index out of range or a coordinate that is no
+// number would crash or mislead whatever comes after. So they are looked at once, before any work.
+// 1. first_bad(): the first of n elements that breaks a rule. A chunk is passed over without a branch an element; only
+//    where it holds an offender is that one looked for.
+// 2. check_places(), check_wedges(), check_groups(), check_streams(): the parts of a mesh. check_materials(),
+//    check_instances(), check_model(): those of a model.
+// 3. validate(): one for each structure. The one for a log asks whether it can be a log of its mesh.
+// Invariants: nothing is changed. The error names the first offender and the limit, whatever the thread count; a
+// cancelled task ends in an error, never in "valid". Cost: O(size).
 #include "lodestone/core/validate.h"
 
 #include <fmt/format.h>
@@ -22,8 +33,8 @@ tl::unexpected<Error> bad(std::string where, fmt::format_string<Args...> text, A
   return fail(ErrorCode::bad_argument, fmt::format(text, std::forward<Args>(args)...), std::move(where));
 }
 
-// The first of n elements that is bad; n if none is. Whether any is, is asked without a branch an element, and which
-// only then. After a cancelled task it means nothing.
+// The first of n elements that is bad; n if none is. A chunk is first asked whether it has any, without a branch an
+// element. After a cancelled task the answer means nothing.
 template <class Bad>
 std::size_t first_bad(std::size_t n, const Task& task, const Bad& is_bad) {
   const auto in_chunk = [&](std::size_t begin, std::size_t end) {
@@ -38,10 +49,10 @@ std::size_t first_bad(std::size_t n, const Task& task, const Bad& is_bad) {
 }
 
 // x - x is 0 for finite x and NaN for all others.
-bool is_infinite(Vec3f p) { return !((p.x - p.x) + (p.y - p.y) + (p.z - p.z) == 0); }
+bool is_not_finite(Vec3f p) { return !((p.x - p.x) + (p.y - p.y) + (p.z - p.z) == 0); }
 
 std::size_t first_infinite(const std::vector<Vec3f>& positions, const Task& task) {
-  return first_bad(positions.size(), task, [&](std::size_t v) { return is_infinite(positions[v]); });
+  return first_bad(positions.size(), task, [&](std::size_t v) { return is_not_finite(positions[v]); });
 }
 
 std::string label(std::string_view kind, std::size_t number, const std::string& name) {
@@ -129,7 +140,7 @@ Result<void> check_materials(const Model& model, const std::string& before) {
   return {};
 }
 
-// Where a mesh with such an offset comes to lie, at most, along any axis. Positions are floats.
+// How far from the origin a mesh with such an offset can come to lie along any axis, whatever its positions (floats).
 double farthest(const Mat4d& transform, Vec3d offset) {
   constexpr auto kMostFloat = static_cast<double>(std::numeric_limits<float>::max());
   const Vec3d most{kMostFloat + std::abs(offset.x), kMostFloat + std::abs(offset.y), kMostFloat + std::abs(offset.z)};
@@ -275,8 +286,8 @@ Result<void> validate(const CollapseLog& log, const Mesh& mesh, const Task& task
   const auto is_bad = [&](std::size_t i) {
     const Collapse& c = collapses[i];
     const std::size_t last = i + 1 < collapses.size() ? collapses[i + 1].first_wedge : log.wedges.size();
-    return std::max(c.kept, c.removed) >= vertices || c.first_wedge > last || last > log.wedges.size() ||
-           is_infinite(c.position);
+    return std::max(c.kept, c.removed) >= vertices || c.kept == c.removed || c.first_wedge > last ||
+           last > log.wedges.size() || is_not_finite(c.position);
   };
   if (const std::size_t i = first_bad(collapses.size(), task, is_bad); i < collapses.size()) {
     const Collapse& c = collapses[i];
@@ -293,6 +304,11 @@ Result<void> validate(const CollapseLog& log, const Mesh& mesh, const Task& task
   }
   for (const std::uint32_t t : log.dropped) {
     if (t >= triangles) return bad(where, "it leaves out triangle {} of {}", t, triangles);
+  }
+  std::uint64_t gone = 0;
+  for (const Collapse& c : collapses) gone += c.faces;
+  if (gone > log.start_triangles || log.start_triangles > triangles) {
+    return bad(where, "{} triangles vanish of {} at the start, the mesh has {}", gone, log.start_triangles, triangles);
   }
   if (task.cancelled()) return cancelled_error("validating");
   return {};

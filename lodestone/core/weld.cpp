@@ -1,7 +1,13 @@
-// Method   Partition by hash into buckets that fit the cache, one small open-addressing table a bucket; the first of
-// equals in
-//          index order represents them, so neither hash nor threads show in the result.
-// Steps    hash keys -> bucket (stable counting sort) -> representatives -> renumber -> drop what no triangle uses
+// Exact welding: vertices at equal positions become one, equal wedges of a vertex become one.
+//
+// Method: items are parted by hash into buckets that fit the cache, with one small open-addressing table a bucket.
+// 1. hash_position(), hash_wedge(), equal_wedges(): what counts as equal: positions as numbers (-0 is 0; what is no
+//    number equals nothing), attributes bit for bit.
+// 2. representatives(): hashes, a stable counting sort into buckets, and for each item the lowest one that equals it.
+// 3. compact(): renumbers, and drops vertices and wedges that no triangle uses.
+// 4. weld_exact(): vertices first, then wedges. wedge_classes(): representatives of wedges alone, by chosen streams.
+// Invariants: the first of equals in index order stands for them, so neither hash nor threads show in the result. Order
+// is kept; triangles and groups stay, though triangles may become degenerate. Cost: O(wedges), about 24 bytes a wedge.
 #include "lodestone/core/weld.h"
 
 #include <bit>
@@ -106,9 +112,6 @@ std::vector<std::uint32_t> representatives(std::size_t n, const Task& task, Hash
   return representative;
 }
 
-// Turns marks (1 = stays) into new numbers; returns how many stay.
-std::size_t number(std::vector<std::uint32_t>& marks, const Task& task) { return exclusive_scan(marks, task); }
-
 void compact_stream(AttributeStream& stream, const std::vector<std::uint32_t>& kept) {
   std::visit(
       [&](auto& values) {
@@ -141,8 +144,8 @@ void compact(Mesh& mesh, const std::vector<std::uint32_t>& wedge_to, const std::
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
     if (vertex_new[v] != 0) kept_vertices.push_back(v);
   }
-  number(wedge_new, task);
-  number(vertex_new, task);
+  exclusive_scan(wedge_new, task);  // marks (1 = stays) become new numbers
+  exclusive_scan(vertex_new, task);
   std::vector<std::uint32_t> wedge_vertex(kept_wedges.size());
   bool identity = kept_wedges.size() == kept_vertices.size();
   for (std::size_t i = 0; i < kept_wedges.size(); ++i) {

@@ -10,8 +10,7 @@ namespace lodestone {
 /// Merges vertices whose three coordinates are equal (-0 equals 0) and wedges of one vertex whose attributes are equal
 /// bit for bit; drops vertices and wedges that no triangle uses. The first of equals in index order stays, order is
 /// kept. Triangles, groups and their order are untouched; triangles may become degenerate. Every reader ends with this.
-/// O(wedges), memory about 24 bytes a wedge. Errors: bad_argument (those of
-/// validate_indices()), cancelled.
+/// O(wedges), memory about 24 bytes a wedge. Errors: bad_argument (those of validate_indices()), cancelled.
 Result<Mesh> weld_exact(Mesh mesh, Task task = {});
 
 /// For each wedge the lowest wedge of the same vertex whose tuples are equal in all streams with `compared[stream]`

@@ -2,7 +2,7 @@
 // viewer shows.
 //
 // Definitions. M1 is the model that is sampled, M2 the other; p1 is a sample on M1 and p2 the point on M2 that
-// corresponds to it. Distances are those of paper 004, section "attribute errors":
+// corresponds to it. Distances are those of [lod-survey], section "attribute errors":
 //   normal   d_n = angle between n1 and n2, degrees, 0 to 180
 //   UV       d_t = sqrt((u1 - u2)^2 + (v1 - v2)^2), as stored, origin at the image's top
 //   colour   d_c = sqrt((r1 - r2)^2 + (g1 - g2)^2 + (b1 - b2)^2), channels in [0, 1], so white to black is sqrt(3)
@@ -20,10 +20,10 @@
 //      that doesn't is taken instead, if it is no farther than d + 1 % of M2's diagonal.
 // The rule looks at shape alone, never at the attributes that it is to judge.
 //
-// Seams. Where two charts of an atlas meet, the slightest shift of the seam pairs points of both, and d_t is then the
-// distance between two charts, which says nothing about what is seen. So `look` is the figure to judge by where there
-// are textures, and of UVs the median and the 95th percentile, which a narrow band along the seams does not reach,
-// stand beside the mean.
+// Seams. Where two charts of an atlas meet, the slightest shift of the seam pairs points of both charts. d_t is then
+// the distance between two places in the atlas and says nothing about what is seen. So `look` is the figure to judge by
+// where there are textures. Of UVs the median and the 95th percentile stand beside the mean, as a narrow band along the
+// seams does not reach them.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,14 @@
-// Method   area-weighted stratified samples and all vertices, each to its closest point on the other surface; then the
-//          maximum is bounded from above (maximum_bound.cpp)
-// Cost     O((samples + vertices) log triangles); queries of neighbouring points share their work (closest_batch.cpp)
+// One direction of the distance between two surfaces: from points of the first to the second.
+//
+// Method: area-weighted stratified samples and all vertices, each to its closest point on the other surface; then the
+// maximum is bounded from above. docs/measuring.md defines the figures.
+// 1. measure_samples(): a chunk of samples: sums of distances, squares and angles between faces, and the largest.
+// 2. spread(): percentiles and a histogram of the samples.
+// 3. directed_distance(): samples, then vertices, which count in the maximum alone (vertex_distances.cpp),
+//    then the bound (maximum_bound.cpp).
+// Invariants: sample i depends on the surface, the seed and i alone; chunks have a fixed size and are joined in order:
+// the same figures for any thread count.
+// Cost: O((samples + vertices) log triangles); queries of neighbouring points share their work (closest_batch.cpp).
 #include <algorithm>
 #include <array>
 #include <cmath>

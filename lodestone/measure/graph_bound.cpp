@@ -1,11 +1,11 @@
-// Method   from a triangle of the other surface on, across all sides that cross the piece in projection. If every one
-// of
-//          them faces the same way, no such side is open and neighbours walk their common side in opposite directions,
-//          the projection of the patch is a covering of the piece: near any point of the patch it is one to one, so the
-//          part of the piece that is covered is open and closed in it. Hence every point of the piece has a partner
-//          straight above or below, and the greatest such height, which lies at a corner of the patch's triangles
-//          clipped to the piece, bounds the distance.
-// Cost     O(triangles of the patch)
+// A bound on the distance of a piece of a triangle from a surface that lies over it like a graph.
+//
+// Method: from a triangle of the other surface on, visit() goes across all sides that cross the piece in projection. If
+// every triangle met so faces the same way, no such side is open and neighbours walk their common side in opposite
+// directions, then the projection of the patch is a covering of the piece: near any point of the patch it is one to
+// one, so the part of the piece that is covered is open and closed in it. Hence every point of the piece has a partner
+// straight above or below. The greatest such height, which lies at a corner of the patch's triangles clipped to the
+// piece, bounds the distance. Cost: O(triangles of the patch).
 #include "lodestone/measure/graph_bound_detail.h"
 
 #include <algorithm>

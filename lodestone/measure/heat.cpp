@@ -1,3 +1,17 @@
+// A surface with its distance to another one, place by place, as numbers and colours.
+//
+// Problem: vertices of a simplified mesh lie near the original, so distances at vertices alone show next to nothing.
+// Method: triangles are split until straight lines between vertices tell the distance.
+// 1. distances(): closest points, in batches.
+// 2. refine(): in rounds, sides_to_split() measures the middles of new sides and the centres of new triangles. Sides
+//    are split where the ends don't say what was measured, and where they are too long; detail::split_sides() cuts both
+//    triangles beside a side.
+// 3. area_percentile(): the distance that 99 % of the area is nearer than, by halving; share_below() is exact for
+//    distances that are linear within a triangle.
+// 4. mesh_of(): the stream `_ERROR`, and a colour for it.
+// Invariants: no cracks, faces keep their direction, and vertices that were there stay. Sums are joined in the order of
+// chunks: the same bytes for any thread count. Cost: O(n log n), n being the triangles after splitting; at most
+// kMostRounds rounds, and never more than `most_triangles`, unless the surface has more itself.
 #include "lodestone/measure/heat.h"
 
 #include <algorithm>
@@ -82,8 +96,8 @@ struct SplitRules {
   double nothing;            // distances below are rounding
 };
 
-// The sides to be split: those whose middle, and those of triangles whose centre, the corners don't tell; and long
-// ones.
+// The sides to be split: those where the distance in the middle is not what the ends say, those of triangles where that
+// at the centre is not what the corners say, and long ones.
 std::vector<EdgeKey> sides_to_split(const Field& field, const spatial::Bvh& to, const SplitRules& rules,
                                     double& largest, const Task& task) {
   const std::vector<EdgeKey> sides = new_sides(field, rules.shortest, task);

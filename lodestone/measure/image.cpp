@@ -1,3 +1,16 @@
+// How different two models look: pictures of both from all around, compared.
+//
+// 1. corners_of_polyhedron(), camera_at(): cameras at the corners of a regular polyhedron, without perspective; the
+//    sphere around the original's box just fits.
+// 2. picture_of(), empty_picture(): samples covered in each pixel, shading, and colours where the original has some.
+// 3. compare_colors(), decibels(): peak signal-to-noise ratio, and structural similarity (Z. Wang et al., 2004
+//    [wang-2004]), over the pixels that either model covers.
+// 4. farthest(), compare_silhouettes(): pixels that one silhouette covers and the other doesn't, and the largest
+//    distance from one to the other, by an exact distance transform (image_figures.cpp).
+// 5. ImageReference: create() takes the original's pictures once, deviation_of() compares a level's with them.
+// Invariants: cameras depend on the original alone. Views are compared in order, and the renderer gives the same bytes
+// for any thread count. log10 may differ in its last bit from machine to machine; nothing is decided by it here.
+// Cost: views x (pixels + triangles), some 7 bytes a pixel and view.
 #include "lodestone/measure/image.h"
 
 #include <algorithm>
@@ -141,7 +154,7 @@ double farthest(const std::vector<std::uint8_t>& from, const std::vector<std::ui
   for (std::size_t i = 0; i < from.size(); ++i) {
     if (from[i] != 0) most = std::max(most, static_cast<double>(distances[i]));
   }
-  return std::min(most, std::sqrt(2.0) * size);  // an empty silhouette is as far as the picture is wide
+  return std::min(most, std::sqrt(2.0) * size);  // an empty silhouette is as far as the picture's diagonal
 }
 
 void compare_silhouettes(const Picture& a, const Picture& b, std::uint32_t size, ImageDeviation& out) {

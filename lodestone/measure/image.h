@@ -34,7 +34,7 @@ struct ImageDeviation {
   /// Structural similarity of the luminance (Wang et al. 2004: 11 x 11 Gaussian windows, sigma 1.5), the mean over the
   /// same pixels: 1 where nothing differs.
   double shading_ssim = 1, color_ssim = 1;
-  bool has_color = false;  ///< false: neither model has textures or vertex colours, and colour figures are empty
+  bool has_color = false;  ///< false: the original has no textures and no vertex colours; colour figures are empty
   int views = 0;
   std::uint32_t size_px = 0;
 

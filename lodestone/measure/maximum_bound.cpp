@@ -1,10 +1,21 @@
-// Branch and bound over the triangles of the first surface.
+// A certified bound: how far the first surface is from the second at most.
 //
-// A triangle over which the other surface lies like a graph is bounded at once (graph_bound.cpp). Else it goes by pieces:
-// the distance to one triangle is a convex function, so over a polygon it is largest at a corner. A piece whose corners
-// have the same closest triangle is bounded by its corners; one whose corners have two or three is cut where those are
-// equally far, and each part is bounded by its own. A piece whose bound stays too high is halved at its longest side.
-// O(triangles), plus one closest-point query a halving; most triangles need none.
+// Problem: the largest distance that samples find is smaller than the true maximum. Method: branch and bound over the
+// triangles of the first surface. A piece of a triangle is done with once its bound is within the tolerance of the
+// largest distance found; of all others the one with the highest bound is halved. docs/measuring.md, "How", point 4.
+// 1. Search::add(), run(): a chunk's triangles, then pieces from a heap, highest bound first, until none is above the
+//    limit or the queries are used up.
+// 2. halve(): cuts the longest side, where possible at the place between two closest triangles, and asks for the
+//    closest point there, which may raise the largest distance found.
+// 3. bound_of(): the cheapest bound that suffices. The distance to one triangle is a convex function, so over a piece
+//    whose corners have the same closest triangle it is largest at a corner. Else: the largest at a corner plus the
+//    farthest that a point can be from all corners; the surface above as a graph (graph_bound.cpp); the distance to any
+//    one triangle (bound_by_one()); the piece cut where two or three triangles are equally far, each part bounded by
+//    its own triangle (bound_of_two(), bound_of_three(), between()).
+// 4. bound_maximum(): chunks of a fixed size, each with its share of the queries.
+// Invariants: the true maximum lies between `peak` and `upper`, up to rounding in double precision. Chunks know nothing
+// of each other: the same figures for any thread count.
+// Cost: O(triangles), plus one closest-point query a halving; most triangles need none.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -62,7 +73,7 @@ class Search {
 
   MaximumBound run(std::uint64_t queries, const Task& task) {
     for (; !heap_.empty() && heap_.front().upper > limit(); --queries) {
-      // More pieces than queries: the goal is out of reach. A few more still find a larger maximum, not all.
+      // More pieces than queries: the goal is out of reach. Only some queries go on looking for a larger maximum.
       if (heap_.size() > queries) queries -= queries / 64;
       if (queries == 0 || task.cancelled()) return {best_, heap_.front().upper};
       std::pop_heap(heap_.begin(), heap_.end(), is_lower);
@@ -104,8 +115,7 @@ class Search {
       }
     }
     const Corner &a = c[longest], &b = c[(longest + 1) % 3], &opposite = c[(longest + 2) % 3];
-    // At the edge between two triangles, so that the halves have fewer of them; in the middle, where that would leave a
-    // sliver.
+    // Where two closest triangles meet, so that the halves have fewer of them; in the middle where that makes a sliver.
     Vec3d middle = (a.at + b.at) * 0.5;
     if (a.triangle != b.triangle) {
       const Vec3d m = between(a, b).at;

@@ -1,3 +1,17 @@
+// Turns normals of points around so that neighbours agree and the outermost look outward.
+//
+// Problem: a plane that was fitted to points has two normals, and only the surface as a whole tells which is outside.
+// Method: H. Hoppe et al., Surface Reconstruction from Unorganized Points, 1992 [hoppe-1992]: the choice is passed on
+// along a minimum spanning tree of the neighbours' graph, whose edges cost 1 - |n1 · n2|, so that it crosses bends
+// last. What differs from it: docs/papers/scans.md.
+// 1. costs_of(): the cost of each edge in 4096 steps, each edge once.
+// 2. spanning_forest(): Kruskal's algorithm; edges are sorted by counting, Sets knows what is joined already.
+// 3. adjacent_of(): neighbours in the forest as flat lists.
+// 4. roots_of(): of each piece's six outermost points the one whose normal lies nearest to the axis; there it is known
+//    which side is outside.
+// 5. orient(): from each root along the forest; a normal that looks against the one before is turned.
+// Invariants: signs change, nothing else. Edges of equal cost stay in the points' order, and all that decides runs on
+// one thread: the same for any thread count. Cost: about linear in the graph's edges.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,7 +53,7 @@ class Sets {
 
 constexpr std::size_t kSteps = 4096;  // that costs of edges are told apart by
 
-// Whether the other end of an edge names this one as well: then it is taken once, from the lower end.
+// Whether an edge is taken from its other end: of two ends that name each other the lower one takes it.
 bool taken_there(const Graph& graph, std::size_t point, std::uint32_t other) {
   if (other > point) return false;
   const std::uint32_t* row = graph.neighbors.data() + std::size_t{other} * graph.k;
@@ -63,7 +77,7 @@ std::vector<std::uint16_t> costs_of(const Graph& graph, std::span<const Vec3f> n
   return costs;
 }
 
-// Places of the graph by cost, equal ones in their order.
+// For each cost the number of edges that cost less: where its edges begin in sorted order. One more at the end.
 std::vector<std::uint64_t> firsts_by_cost(const std::vector<std::uint16_t>& costs) {
   std::vector<std::uint64_t> first(kSteps + 1, 0);
   for (const std::uint16_t c : costs) {

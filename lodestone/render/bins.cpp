@@ -1,3 +1,15 @@
+// Sorts the triangles of a picture by the tiles that they may touch, so that each tile can be drawn by itself.
+//
+// 1. ChunkBinner::add(): leaves out triangles that lie beside the picture, have no area, or whose box holds no sample,
+//    and turns the others so that their area is positive. add_clipped(): parts of triangles that reach too far out or
+//    behind the eye (clip.cpp).
+// 2. sorted(): counts, offsets, lists. A small triangle, whose box is at most kSmall pixels, is copied into every tile
+//    that it touches, relative to that tile's corner: 28 bytes. A larger one is kept once and named by rows of tiles.
+// 3. SamplePattern::of(): where the samples of a pixel lie.
+// 4. bin_triangles(): chunks of triangles, on all threads.
+// Invariants: places are whole numbers, 1/256 pixel. Chunks depend on the number of triangles alone and stay in the
+// surface's order, within a list triangles keep theirs: the same bins for any thread count.
+// Cost: O(triangles + tiles that they touch).
 #include <algorithm>
 #include <utility>
 
@@ -11,7 +23,7 @@ namespace {
 
 constexpr std::size_t kLeastChunk = 16384, kMostChunks = 128;
 
-// Tiles from (column0, row0) to (column1, row1), both in.
+// Tiles from (column0, row0) to (column1, row1), both included.
 struct TileRange {
   std::int32_t column0, row0, column1, row1;
 };
@@ -46,9 +58,9 @@ class ChunkBinner {
     Pending pending;
     pending.triangle = {
         {v[0].x, v[b].x, v[c].x}, {v[0].y, v[b].y, v[c].y}, {v[0].nearness, v[b].nearness, v[c].nearness}, id};
-    constexpr std::int32_t kShift = kTile * kSub;
-    pending.tiles = {std::max(min_x, 0) / kShift, std::max(min_y, 0) / kShift, std::min(max_x / kShift, columns_ - 1),
-                     std::min(max_y / kShift, rows_ - 1)};
+    constexpr std::int32_t kTileUnits = kTile * kSub;
+    pending.tiles = {std::max(min_x, 0) / kTileUnits, std::max(min_y, 0) / kTileUnits,
+                     std::min(max_x / kTileUnits, columns_ - 1), std::min(max_y / kTileUnits, rows_ - 1)};
     pending.small = max_x - min_x <= kSmall * kSub && max_y - min_y <= kSmall * kSub;
     pending_.push_back(pending);
   }

@@ -1,3 +1,19 @@
+// From the attribute streams of a model's meshes to what each corner of the flattened scene carries.
+//
+// Problem: streams belong to wedges of meshes, in the types of the file; drawing wants three normals, UVs, colours and
+// numbers for each triangle of one surface in world space, packed.
+// 1. DrawnTriangles: the instance, mesh, group and wedges that a triangle of the surface comes from;
+//    for_each_triangle().
+// 2. gather_normals(): smooth normals that keep creases (spatial::CreaseNormals), then the streams' where there are
+//    any, by the transposed inverse of the instance's transform.
+// 3. gather_appearances(): the material of each triangle.
+// 4. gather_uvs(): only where something drawn has a texture; after the material's texture transform, origin at the top.
+// 5. gather_colors(): vertex colours, 16 bits a channel; white where there are none.
+// 6. values_of_meshes(), gather_values(): a number a corner for heat maps: values that were given, or a named attribute
+//    (the length, where that has several components).
+// 7. gather_corners(): all of them.
+// Invariants: the model stays as it is; an array is empty where nothing drawn has what it holds. Each triangle is
+// written by one thread: the same bytes for any thread count. Cost: O(triangles + wedges) for each of the arrays.
 #include "lodestone/render/corner_streams_detail.h"
 
 #include <fmt/format.h>
@@ -28,7 +44,7 @@ const AttributeStream* usable(const Mesh& mesh, Semantic semantic, std::uint32_t
   return stream != nullptr && stream->components >= components && is_blendable(*stream) ? stream : nullptr;
 }
 
-// Where a triangle of the surface comes from.
+// Which triangle of the model a triangle of the surface is.
 struct DrawnTriangle {
   std::uint32_t instance, mesh, group;
   Triangle wedges;  // in the order of the surface's corners
@@ -123,7 +139,7 @@ void gather_appearances(const Model& model, const DrawnTriangles& spots, SceneDa
   });
 }
 
-// The appearances that something drawn has.
+// Non-zero for each appearance that something drawn has.
 std::vector<std::uint8_t> appearances_in_use(const SceneData& data) {
   std::vector<std::uint8_t> used(data.appearances.size(), 0);
   for (const std::uint32_t appearance : data.appearance) used[appearance] = 1;
@@ -145,7 +161,6 @@ void gather_uvs(const Model& model, const DrawnTriangles& spots, SceneData& data
   }
   if (!textured) return;
   data.uvs.resize(data.surface.triangles.size());
-  std::vector<std::uint8_t> without(data.appearances.size(), 0);
   std::vector<StreamOfMesh> sets(data.appearances.size());
   for (std::size_t m = 0; m < model.materials.size(); ++m) {
     sets[m] = streams_of(model, [&](std::size_t mesh) {

@@ -9,7 +9,8 @@
 
 namespace lodestone::render::detail {
 
-/// Fills normals, uvs, colors, values and appearance from the model's streams; `data` has surface, first_drawn and appearances.
+/// Fills normals, uvs, colors, values and appearance from the model's streams; `data` has surface, first_drawn and
+/// appearances.
 /// Errors: bad_argument (as Scene::create).
 Result<void> gather_corners(const Model& model, const SceneOptions& options, SceneData& data, const Task& task);
 

@@ -24,8 +24,8 @@ struct Frame {
 /// Sides of a picture, pixels.
 inline constexpr std::uint32_t kMostSide = 16384;
 
-/// Draws what render() draws, samples at the same places. `samples`: 1 (the pixel's middle) or 4. Looks with holes
-/// (alpha masks) have their holes. The same for any number of threads. O(triangles + pixels); some 40 bytes a triangle
+/// Draws what render() draws, samples at the same places. `samples`: 1 (the pixel's middle) or 4. Alpha masks have
+/// their holes. The same for any number of threads. O(triangles + pixels); some 40 bytes a triangle
 /// and 10 a pixel. Errors: bad_argument (a camera that can't be, a side of 0 or above kMostSide, samples), cancelled.
 Result<Frame> rasterize(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
                         int samples = 4, Task task = {});

@@ -21,7 +21,7 @@ using Corners = std::array<T, 3>;
 /// Red, green, blue and alpha as light, 1 = 65535.
 using PackedColor = std::array<std::uint16_t, 4>;
 
-/// How the triangles of one material appearance.
+/// How the triangles of one material look.
 struct Appearance {
   Vec3f color{1, 1, 1};  ///< base colour factor, light
   float alpha = 1;

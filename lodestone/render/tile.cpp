@@ -1,7 +1,18 @@
-// Method   edge functions in fixed point, four samples at a time, tested against the nearest so far
-// Source   Pineda, "A parallel algorithm for polygon rasterization", 1988; the rule for shared sides is Direct3D's
-//          (top-left)
-// Cost     small triangles: some 30 operations and 15 a cell that their box touches
+// What each sample of a tile sees: triangles drawn one after the other, the nearest stays.
+//
+// Method: edge functions in fixed point (J. Pineda, A Parallel Algorithm for Polygon Rasterization,
+// 1988 [pineda-1988]), four samples at a time, tested against the nearest so far. The rule for shared
+// sides is Direct3D's (top-left).
+// 1. owns_side(): which of two triangles gets the samples on their common side; the other's edge function
+//    is lowered by 1.
+// 2. test_depth(), without_holes(): keeps the nearest of the samples that a triangle covers, but for
+//    holes of alpha masks.
+// 3. draw_small(): every cell of four samples in the triangle's box, in 32 bits.
+// 4. LargeDrawing: edge functions in 64 bits, depth in double; blocks of 8 x 8 pixels that lie outside are left out.
+// 5. draw_tile(): chunk after chunk in the surface's order, of each chunk the small triangles and then the large ones.
+// Invariants: coverage is decided in whole numbers, so a sample on a side that two triangles share belongs to exactly
+// one of them. Of two at the same nearness the one drawn first stays. A tile belongs to one thread.
+// Cost: small triangles: some 30 operations, and 15 for each cell that their box touches.
 #include <algorithm>
 
 #include "lodestone/math/float4.h"
@@ -55,7 +66,7 @@ Target target_of(SampleTile& tile, std::int32_t x, std::int32_t y, const SampleP
   return target;
 }
 
-// Takes out the samples that appearance through a hole.
+// Takes out the samples at which the triangle has a hole.
 Int4 without_holes(const Target& target, std::uint32_t id, std::int32_t x, std::int32_t y, Int4 inside) {
   constexpr float kPerSub = 1.0F / kSub;
   for (std::size_t s = 0; s < 4; ++s) {
@@ -129,7 +140,7 @@ struct EdgeFunction {
   std::array<std::int64_t, 4> of_lanes;
 };
 
-// Blocks of 8 x 8 pixels (two cells wide with one sample a pixel) are left out, filled or looked into.
+// Blocks of 8 x 8 pixels (two cells wide with one sample a pixel) are left out or looked into.
 constexpr std::int32_t kBlock = 8;
 
 class LargeDrawing {

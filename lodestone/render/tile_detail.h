@@ -23,8 +23,9 @@ struct SampleTile {
   }
 };
 
-/// Draws into the tile at `column`, `row` of the bins everything that touches it, in the surface's order: of two at the
-/// same nearness the first stays. A sample on a side that two triangles share belongs to exactly one of them.
+/// Draws into the tile at `column`, `row` of the bins everything that touches it: chunk after chunk in the surface's
+/// order, of each chunk the small triangles first. Of two at the same nearness the one drawn first stays. A sample on a
+/// side that two triangles share belongs to exactly one of them.
 /// `holes`: null where no appearance has any.
 void draw_tile(const Bins& bins, std::int32_t column, std::int32_t row, const SamplePattern& pattern,
                const Holes* holes, SampleTile& tile);

@@ -1,3 +1,15 @@
+// All levels of a ladder in one picture: a column a level.
+//
+// Problem: levels differ when all are seen at one size, and should not when each is seen from where it takes over.
+// A sheet shows both.
+// 1. upper_row(), lower_row(), left_of(), sheet_size(): where cells and captions lie.
+// 2. check(): that the sheet is not larger than a picture may be.
+// 3. at_distance(): the camera of the lower row: from where a level takes over, as large as the screen shows it then,
+//    reduced where that would not fit into the cell.
+// 4. paste(), write_line(): a picture and its captions.
+// 5. contact_sheet(): above all levels from one camera, which frames the original; below each from its own distance.
+// Invariants: the upper row's camera depends on the original alone; captions are cut to their cell. The renderer gives
+// the same bytes for any thread count, so the sheet has the same, too. Cost: two pictures a level.
 #include "lodestone/report/contact_sheet.h"
 
 #include <fmt/format.h>
@@ -66,15 +78,15 @@ std::string length_text(double length, const std::string& unit) {
   return fmt::format("{:.4g}{}{}", length, unit.empty() ? "" : " ", unit);
 }
 
-// A camera, and how large its picture shows the model, of the size on the screen: 1, or less where it would not fit.
+// A camera, and the scale of its picture against the screen: 1, or less where the model would not fit into the cell.
 struct LowerView {
   Camera camera;
   double scale = 1;
 };
 
-// As the screen shows the model from `distance`, to the surface of the sphere around the original's box. Where that
-// sphere is larger than the cell it is reduced, and seen from no nearer than its own radius, where little would be seen
-// of it.
+// As the screen shows the model from `distance`, which is to the surface of the sphere around the original's box. Where
+// that sphere is larger than the cell, the picture is reduced and taken from no nearer than the sphere's radius, as
+// little would be seen from nearer.
 LowerView at_distance(const Camera& framed, const render::Scene& original, double error, double distance,
                       const SheetOptions& options) {
   LowerView out{framed, 1};

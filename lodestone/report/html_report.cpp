@@ -1,3 +1,12 @@
+// The page about a ladder: one HTML document that needs nothing else.
+//
+// 1. TableMaker: a table that scrolls by itself where it is too wide, also by keyboard.
+// 2. summary(), level_table(), shape_table(): what was made, its errors, and the shape of each level.
+// 3. shot(), legend(), pictures(): pictures embedded as data, with the colours of the heat maps explained once.
+// 4. options_table(), meaning(): options given and defaults; what each figure means.
+// 5. html_report(): the sections in order. Plots come from report_plots.cpp, warnings from plain_warnings.cpp.
+// Invariants: no script and no network, which the page's Content-Security-Policy enforces. Text from outside is
+// escaped. Nothing about time or machine: the same data give the same page. docs/report.md shows what is on it.
 #include "lodestone/report/html_report.h"
 
 #include <fmt/format.h>
@@ -193,7 +202,7 @@ std::string options_table(const std::vector<ReportOption>& options, bool given) 
       given ? "Options given" : "Defaults", rows);
 }
 
-// A direction; ladders take more where chance would make the mean.
+// The fewest samples a direction of all levels: ladders take more where few samples would decide the mean.
 std::uint64_t least_samples(const ReportData& data) {
   std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
   for (std::size_t i = 1; i < data.levels.size(); ++i) least = std::min(least, data.levels[i].error.samples);

@@ -27,8 +27,7 @@ struct LevelPictures {
 };
 
 /// Drawn one after the other, so memory is that of the largest. The original's textures must be decoded before
-/// (io::decode_base_colors()). Errors: bad_argument (those of validate()), empty, out_of_memory,
-/// cancelled.
+/// (io::decode_base_colors()). Errors: bad_argument (those of validate()), empty, out_of_memory, cancelled.
 Result<std::vector<LevelPictures>> draw_levels(const Ladder& ladder, const PictureOptions& options = {},
                                                Task task = {});
 

@@ -1,3 +1,12 @@
+// A plot of a few lines as inline SVG, which takes its colours from the page.
+//
+// 1. Axis, axis_of(): from values to places on the picture, linear or logarithmic, with some air around the values.
+// 2. tick_text(), add_axes(), add_line(), add_key(): grid and marks, lines with a dot a point, and the key.
+// 3. description(): all values in words, for those who can't see the plot.
+// 4. power_ticks(), even_ticks(), axis_ticks(): where marks lie: powers of ten, or steps of 1, 2 or 5 times one.
+// 5. svg_of(): the whole.
+// Invariants: points that a logarithmic axis can't show are left out; names are escaped. pow and log10 are libm's, so a
+// place may differ in its last digit between machines. Cost: O(points).
 #include "lodestone/report/svg_plot.h"
 
 #include <fmt/format.h>

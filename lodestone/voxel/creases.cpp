@@ -1,3 +1,15 @@
+// Where the creases of a surface run through the cubes of a grid.
+//
+// Problem: sharp_surface.cpp wants one point for each cube that lies on a crease of the source, or at a corner of it.
+// Method: creases are not estimated from the volume; the source's edges are cut by the lattice.
+// 1. creases_of(): edges whose two triangles have normals that differ by more than an angle, found
+//    by sorting all sides.
+// 2. corners_of(): vertices where a crease ends, where several meet, or where one turns by more than 45 degrees.
+// 3. Lattice, cut_into_runs(): creases cut at the faces of cubes; a run is what lies within one cube.
+// 4. middle_of(): the point of a cube's runs that is nearest to their mean, so that it lies on a crease.
+// 5. crease_points(): one point a cube, by cube; a corner goes before all others.
+// Invariants: sorts are stable or have a total order, and all runs on one thread. Open edges are no creases; triangles
+// of an edge that has more than two are taken in pairs. Cost: O(n log n), n being sides and runs.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -71,7 +83,7 @@ std::vector<std::uint32_t> corners_of(const spatial::Surface& surface, const std
   return corners;
 }
 
-// In cubes: whole numbers are voxel centres, and so corners of cubes.
+// Coordinates in which cubes have sides of 1: whole numbers are the centres of voxels, which are corners of cubes.
 class Lattice {
  public:
   explicit Lattice(const VoxelGrid& grid) : grid_(grid) {

@@ -8,8 +8,8 @@
 
 namespace lodestone::voxel {
 
-/// Two triangles for each side of a set voxel whose neighbour there is not set (paper 000, section 2.3.5, figures 12 to
-/// 15), faces outward, corners shared; where set voxels touch along an edge alone, that edge has four faces. Model
+/// Two triangles for each side of a set voxel whose neighbour there is not set ([voxel-lod], section 2.3.5, figures 12
+/// to 15), faces outward, corners shared; where set voxels touch along an edge alone, that edge has four faces. Model
 /// units. O(voxels / 64 + faces), memory 8 bytes a column on top of the mesh. Errors: bad_argument (those of
 /// validate()), empty (no voxel set), unsupported (more corners than a mesh can name), cancelled.
 Result<Mesh> cube_faces(const BitVolume& volume, Task task = {});

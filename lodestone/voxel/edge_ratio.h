@@ -1,4 +1,4 @@
-// Levels straight from a solid's bits, as paper 000 makes them.
+// Levels straight from a solid's bits, as [voxel-lod] makes them.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@ struct EdgeRatioOptions {
 };
 
 /// The surface by cubes between `samples` points a side, the middles of so many large voxels in the solid, each inside
-/// where VoxExt says so (paper 000, section 2.4), with vertices where a march along the edge finds the change
-/// (EdgeRatio, section 2.5). Each crossed edge is marched once, where the paper marches it for every cube beside it.
+/// where VoxExt says so ([voxel-lod], section 2.4.2), with vertices where a march along the edge finds the change
+/// (EdgeRatio, section 2.4.4). Each crossed edge is marched once, where the paper marches it for every cube beside it.
 /// Closed and manifold, as voxel::isosurface. O(samples + crossed edges · steps). Errors: bad_argument (no samples, or
 /// more than voxels; a threshold outside of (0, 1); those of validate()), empty, unsupported, cancelled.
 Result<Mesh> edge_ratio_surface(const BitVolume& solid, const std::array<std::uint32_t, 3>& samples,

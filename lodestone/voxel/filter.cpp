@@ -1,3 +1,14 @@
+// Filters against the noise of scanned volumes: Gaussian blur and median.
+//
+// 1. exp_minus(), kernel_of(): weights of the Gaussian, cut off after three standard deviations, with the sum 1. The
+//    exponential is a series, as libm's differs from machine to machine.
+// 2. blur_rows(): the blur along one axis of a slice. A Gaussian is the product of three along the axes, so gaussian()
+//    runs it once an axis. Along y and z whole rows are added, so that the inner loop runs along memory.
+// 3. median_of(): the middle one of the (2 radius + 1)³ values around each voxel; what is no number
+//    counts as the least.
+// 4. gaussian_reach(), padded(), as_float(): how far a blur looks, a margin of zeros for it, and values as floats.
+// Invariants: beyond the border the border's values go on. A slice belongs to one thread and each sum has a fixed
+// order: the same values for any thread count. Cost: blur O(voxels · sigma), median O(voxels · radius³).
 #include "lodestone/voxel/filter.h"
 
 #include <fmt/format.h>
@@ -43,7 +54,7 @@ std::vector<float> kernel_of(double sigma) {
   return kernel;
 }
 
-// The places k - reach to k + reach of a row of `count`, kept inside.
+// Place at + offset - reach of a row of `count`, or the nearest that there is.
 std::size_t kept_inside(std::size_t at, std::size_t offset, std::size_t reach, std::size_t count) {
   const std::size_t moved = at + offset;
   return moved < reach ? 0 : std::min(moved - reach, count - 1);

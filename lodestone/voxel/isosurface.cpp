@@ -1,4 +1,17 @@
-// Method   Marching Cubes on a bit a voxel, see cube_surface.cpp; vertices where values, linear along edges, reach iso
+// The surface at which the values of a volume pass an iso value.
+//
+// Method: Marching Cubes (W. Lorensen and H. Cline, 1987 [lorensen-cline-1987]) in two parts. Which edges are crossed
+// and which cubes are cut follows from one bit a voxel and is found by cube_surface.cpp; this file makes the bits and
+// says where on its edge each vertex lies.
+// 1. inside_rows(): the bits, with an empty layer all around, for which set_row() moves each row on by one. Bytes are
+//    compared 16 or 32 at a time. For whole numbers iso is rounded down, so that no value need be converted.
+// 2. Shares, shares_of(): the share of an edge at which the values, linear along it, reach iso; a half where the edge
+//    leaves the volume or a value is not finite.
+// 3. contour_of(): bits, crossed edges, vertices, and triangles by the table.
+// 4. surface_of(): with `trilinear`, triangles by trilinear_cubes.cpp from corner_values() in their place.
+// Invariants: closed whatever the values, as the layer around is outside; a vertex is shared by all cubes around its
+// edge. AVX2 changes the time, no bit. Slices are worked on apart: the same bytes for any thread count.
+// Cost: O(voxels + triangles), memory a bit a voxel and 12 bytes a row on top of the mesh.
 #include "lodestone/voxel/isosurface.h"
 
 #include <fmt/format.h>
@@ -108,8 +121,7 @@ template <class T>
 InsideRows inside_rows(const VolumeView<T>& volume, double iso, const Task& task) {
   const auto& size = volume.grid.size;
   InsideRows rows(size[0], size[1], size[2]);
-  // For whole numbers v > iso is v > floor(iso), which needs no conversion. Where that is below the least, all are
-  // inside.
+  // For whole numbers v > iso is v > floor(iso), which needs no conversion. Below the least value all are inside.
   constexpr bool kWhole = !std::is_floating_point_v<T>;
   if (kWhole && iso >= static_cast<double>(std::numeric_limits<T>::max())) return rows;
   const bool all = kWhole && iso < static_cast<double>(std::numeric_limits<T>::lowest());

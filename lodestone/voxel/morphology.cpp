@@ -1,3 +1,18 @@
+// Voxels grown, shrunk and flooded: what the closing of scans and of open surfaces is made of.
+//
+// Method: closing by a ball (J. Serra, Image Analysis and Mathematical Morphology, 1982 [serra-1982]). Shapes are grown
+// by a radius, what can't be reached from outside is inside, and the growth is taken back. To grow or to shrink is to
+// compare squared distances with the radius squared.
+// 1. distances_sq(): exact squared distances, one axis after the other: row_distances() along x from the bits,
+//    then Plane::sweep() along y and along z, which lowers a row to what another one says plus the square of
+//    how far that is.
+// 2. within(): the voxels whose squared distance is at most that of a radius.
+// 3. flooded_from_outside(): Flood begins at the sides of the grid and goes over sides of free voxels, 64 in a word:
+//    spread() fills free bits within a word by steps that double, pass_on() goes on to the six words around.
+// 4. complement(): the other voxels.
+// Invariants: distances are whole numbers, exact up to `reach`; 180 voxels at most, so that 16 bits hold them. What
+// lies around the grid counts as not set. The flood runs on one thread; nothing depends on the number of threads.
+// Cost: distances O(voxels · reach), little where rows have nothing near; flood O(voxels / 64), more in mazes.
 #include "lodestone/voxel/morphology.h"
 
 #include <algorithm>

@@ -5,8 +5,7 @@
 
 namespace lodestone::voxel {
 
-/// The value that best parts values in two: Otsu, A threshold selection method from gray-level histograms, IEEE
-/// Transactions on Systems, Man, and Cybernetics 9 (1979); 1024 bins between least and most. O(values).
+/// The value that best parts values in two [otsu-1979], by 1024 bins between least and most. O(values).
 double otsu_threshold(const VolumeValues& values, double least, double most);
 
 }  // namespace lodestone::voxel

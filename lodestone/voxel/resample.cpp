@@ -1,3 +1,17 @@
+// A solid of bits at another resolution.
+//
+// There are two ways. voxel_value() is the function VoxExt of [voxel-lod], equations 2-11 to 2-14: trilinear
+// between the eight voxels around a point. downsample() counts: each larger voxel gets the share of its small ones
+// that are set, so that vertices can lie between voxels. docs/papers/voxel.md, "What differs from the paper", says
+// why it is preferred.
+// 1. cuts(): which small voxels each large one takes along an axis; the sizes need not divide.
+// 2. count_row(): the set bits of one row by large voxels: add_row() for 2, 4 and 8 bits in fields of a word,
+//    add_row_between(), which skips empty words, for all other sizes.
+// 3. voxel_value().
+// 4. downsample(): rows added up over y and z, then turned into shares of 0 to 255, where possible by share_table().
+// 5. downsample_thin(): the same, but a large voxel with any bit set gets at least 128, so that thin parts stay.
+// Invariants: counts are exact; the share is rounded once. Slices of the result are independent: the same bytes for any
+// thread count. Cost: O(voxels / 64 + large voxels · r²), r being the old size over the new one.
 #include "lodestone/voxel/resample.h"
 
 #include <fmt/format.h>
@@ -78,12 +92,12 @@ void add_row_between(const std::uint64_t* row, std::size_t words, std::span<cons
   }
 }
 
-// How much of `all` bits is set, 255 = all of them.
+// The share of `all` bits that is set, 255 = all of them.
 std::uint8_t share_of(std::uint64_t count, std::uint64_t all) {
   return static_cast<std::uint8_t>((255 * count + all / 2) / all);
 }
 
-// The same for each count, in place of a division a voxel; only {0} where that would be long.
+// share_of() each count, to be looked up in place of a division a voxel; only {0} where the table would be long.
 std::vector<std::uint8_t> share_table(std::uint64_t all) {
   std::vector<std::uint8_t> table(1);
   if (all > 1 << 16) return table;

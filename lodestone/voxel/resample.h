@@ -10,9 +10,9 @@
 
 namespace lodestone::voxel {
 
-/// The extended voxel function of paper 000 (VoxExt, equations 2-11 to 2-14): trilinear between the eight voxels around
-/// a point, 0 outside of the volume; in [0, 1]. `at` is in voxels, whole numbers are voxels' centres as in the paper:
-/// VoxelGrid's coordinates less one half.
+/// The extended voxel function of [voxel-lod] (VoxExt, equations 2-11 to 2-14): trilinear between the eight voxels
+/// around a point, 0 outside of the volume; in [0, 1]. `at` is in voxels, whole numbers are voxels' centres as in the
+/// paper: VoxelGrid's coordinates less one half.
 double voxel_value(const BitVolume& volume, Vec3d at);
 
 /// Which share of each larger voxel is set, 0 to 255 (to the nearest), from exact counts. Larger voxel i takes voxels

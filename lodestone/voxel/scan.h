@@ -32,8 +32,7 @@ struct ScanFigures {
   /// Holes larger than the radius: what should be inside is joined to the outside, so that the surface is (in parts) a
   /// thin shell around the points.
   bool open = false;
-  double sheet_distance =
-      0;  ///< scan_distance(): trim_to_points() with this keeps the side of a shell that points lie on
+  double sheet_distance = 0;  ///< scan_distance(): for trim_to_points(), which then keeps a shell's side with points
   std::vector<std::string> warnings;  ///< in plain words, for the user
 };
 

@@ -1,3 +1,19 @@
+// A volume of signed distances from points with normals; its zero is the surface of the scan.
+//
+// Source: H. Hoppe et al., Surface Reconstruction from Unorganized Points, 1992 [hoppe-1992]: the distance to the plane
+// of the nearest point. docs/papers/scans.md lists what differs. Planes are right near the points and say nothing
+// elsewhere. The closed solid (see morphology.cpp) tells inside from outside everywhere, but bulges where a hole was.
+// So planes decide in a band about the solid's surface, the solid beyond it, with a smooth change between.
+// 1. Planes: the weighted mean of the distances to the planes of the nearest points; the weight falls to 0 just beyond
+//    the last of them.
+// 2. Distances: depth in the solid, and planes where points are near. It counts the voxels that planes call inside and
+//    the solid all but outside: there no point makes the surface, so the scan is open.
+// 3. fill_pockets(): what planes call outside but nothing leads to from outside is inside.
+// 4. scan_distance(): plans grid and radius, grows the voxels that hold points, floods, takes distances from the
+//    outside, and runs the steps above.
+// Invariants: the solid's sign stands outside of the band, so holes up to the radius are closed. Each row of voxels is
+// worked on by itself, its first query as if there had been none before: the same values for any thread count.
+// Cost: one query of nearest points for each voxel of the band; memory as scan_distance_bytes() says.
 #include <algorithm>
 #include <array>
 #include <cmath>

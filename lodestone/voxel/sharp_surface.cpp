@@ -1,5 +1,19 @@
-// Source   G. Nielson, Dual Marching Cubes, IEEE Visualization 2004; vertices on creases as in T. Ju et al., Dual
-//          Contouring of Hermite Data, SIGGRAPH 2002, but from the creases themselves, which the source has
+// The surface of a solid of voxels that keeps the creases and corners of the surface that the solid was made from.
+//
+// Problem: Marching Cubes has its vertices on edges of the lattice, which chamfers every crease. Method: the dual
+// surface, with a vertex inside each cut cube, which can be put on a crease (G. Nielson, Dual Marching Cubes, 2004
+// [nielson-2004]). Dual contouring finds creases by the normals at the crossings (T. Ju et al., 2002 [ju-2002]); here
+// they are taken from the source itself (creases.cpp). Figures: docs/papers/voxel.md, "Sharp edges".
+// 1. list_rings(): the rings of crossed edges of each cut cube, and the four rings around each crossed edge.
+// 2. place_vertices(): a ring's vertex is the middle of its crossings, moved to the closest point of the source but not
+//    out of its cube; where a crease runs through the cube, the ring nearest to it gets the crease's point.
+// 3. fill_gaps(): a point of a crease in a cube that is not cut takes the nearest vertex beside it.
+// 4. separate_coincident_vertices(): of several vertices at one place all but the first go back to their middles.
+// 5. Quads: two triangles over the four rings around each crossed edge; near creases along the diagonal that lies
+//    nearer to the source, elsewhere along the shorter. Two rings that meet twice in one face share two sides, and one
+//    edge would get four triangles: find_shared_sides() finds these sides, add_fan() gives each a vertex of its own.
+// Invariants: closed, with two triangles at every edge. Slices of cubes are worked on apart and joined in order, so the
+// bytes are the same for any thread count. Cost: O(voxels + triangles log source).
 #include "lodestone/voxel/sharp_surface.h"
 
 #include <algorithm>
@@ -109,7 +123,7 @@ void list_rings(Dual& dual, const Task& task) {
   });
 }
 
-// Turns of going to the source and back into the cube: a vertex must not jump onto a crease in another cube.
+// How often a vertex goes to the source and back into its cube: it must not jump onto a crease in another cube.
 constexpr int kTurns = 3;
 
 Vec3d kept_in_cube(const Dual& dual, Vec3d at, std::uint64_t cube) {
@@ -178,8 +192,8 @@ std::pair<std::size_t, std::size_t> rings_of_cube(const Slice& slice, std::uint6
   return {static_cast<std::size_t>(low - slice.cube.begin()), static_cast<std::size_t>(high - slice.cube.begin())};
 }
 
-// The nearest vertex beside a cube that is not cut goes to the crease in it: one on no crease yet, or, to a corner, one
-// on no corner.
+// Moves the nearest vertex beside a cube that is not cut onto the crease in it. Vertices on a crease stay, but to a
+// corner they may go, unless they are on one already.
 void take_vertex_beside(Dual& dual, const detail::CreasePoint& crease) {
   const std::uint64_t width = dual.contour.rows.width, height = dual.contour.rows.height;
   const std::uint64_t z = crease.cube / width / height;
@@ -206,7 +220,8 @@ void take_vertex_beside(Dual& dual, const detail::CreasePoint& crease) {
   slice->creased[ring] = crease.corner ? 2 : 1;
 }
 
-// A crease may run through cubes that are not cut, where its edge is thin; it shall have no gap there. Corners first.
+// A crease may run through cubes that are not cut, where the solid is thin; without this it would have a gap there.
+// Corners first.
 void fill_gaps(Dual& dual, const std::vector<detail::CreasePoint>& creases) {
   const std::uint64_t slice = std::uint64_t{dual.contour.rows.width} * dual.contour.rows.height;
   for (const bool corners : {true, false}) {

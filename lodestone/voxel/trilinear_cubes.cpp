@@ -1,3 +1,18 @@
+// Triangles of cubes in which the corners alone don't say how the surface passes through.
+//
+// Problem: where inside corners of a face, or of the cube, lie opposite, the table of cube_cases.cpp always parts them;
+// the trilinear interpolant of the values may join them. Method: faces by the asymptotic decider (G. Nielson and
+// B. Hamann, 1991 [nielson-hamann-1991]); a tube between two rings by the value at the interpolant's saddles
+// (E. Chernyaev, Marching Cubes 33, 1995 [chernyaev-1995]).
+// 1. polynomial(), saddles(): the interpolant of a cube, and the points inside where its gradient is 0.
+// 2. SliceMaker: a ring becomes a fan (add_disk()), two rings become a tube (add_tube()).
+// 3. is_ambiguous(): the cases that may differ from the table.
+// 4. trilinear_cube(): walks around each face, joins opposite inside corners where joins_inside() says so, and follows
+//    the lines to rings. Of two rings it asks whether a saddle joins what they part.
+// 5. make_trilinear_triangles(): all cut cubes, the unambiguous ones by the table.
+// Invariants: two cubes beside a face compute the same products and so cut it alike; no triangle has a side in a face
+// but on the lines there. Slices are worked on apart, their own vertices numbered from kOwn, and joined in order: the
+// same bytes for any thread count. With three rings or more each is taken for a piece of its own. Cost: O(cut cubes).
 #include "lodestone/voxel/trilinear_cubes_detail.h"
 
 #include <algorithm>
@@ -32,13 +47,14 @@ bool opposite_inside(unsigned corners, const std::array<unsigned, 4>& c) {
   return in(0) == in(2) && in(1) == in(3) && in(0) != in(1);
 }
 
-// Both cubes beside a face compute the same products.
+// Whether the bilinear interpolant of a face joins its opposite inside corners. Both cubes beside it compute the same
+// products.
 bool joins_inside(const CornerValues& v, unsigned corners, const std::array<unsigned, 4>& c) {
   const double even = v[c[0]] * v[c[2]], odd = v[c[1]] * v[c[3]];
   return (corners >> c[0] & 1) != 0 ? even > odd : odd > even;
 }
 
-// Pieces that corners fall into.
+// Which corners are joined, all being apart at first.
 struct Pieces {
   std::array<unsigned, 8> of;
   Pieces() { std::iota(of.begin(), of.end(), 0U); }

@@ -1,7 +1,16 @@
-// Method   crossings of lines along z, found triangle by triangle; parity: a bit at each crossing, then every slice is
-//          XORed with the one before; nonzero: crossings sorted along each line and summed
-// Source   paper 000, section 2.3 (slices and scanlines), with lines along z for its scanlines and all slices at once
-// Cost     O(triangles + crossings + voxels / 64)
+// Which voxels' centres lie inside a surface.
+//
+// Source: [voxel-lod], sections 2.3.2 and 2.3.3 (slices, then scanlines in each). Here the scanlines are lines along z
+// through all voxels' centres, and all slices are made at once; docs/papers/voxel.md says why.
+// 1. toggle_crossings(), fill_parity(): for closed surfaces a bit at the first voxel after each crossing, then every
+//    slice XORed with the one before, 64 voxels in a word.
+// 2. fill_nonzero(): for several closed pieces that overlap the crossings of a line are sorted, and their signs summed.
+// 3. leaking_lines(): lines that are still inside after their last crossing, as those of open surfaces are.
+// 4. grid_around(), grid_over(): grids for a box.
+// 5. voxelize(): picks the rule. Open surfaces go to fill_winding.cpp, holes to be closed by a radius to shrinkwrap().
+// Invariants: whether a line crosses a triangle is decided in whole numbers (z_crossings_detail.h), and a line through
+// an edge or a vertex meets exactly one of the triangles beside it, so a closed surface never leaks. Bands of rows
+// belong to one thread each: the same bits for any thread count. Cost: O(triangles + crossings + voxels / 64).
 #include "lodestone/voxel/voxelize.h"
 
 #include <fmt/format.h>

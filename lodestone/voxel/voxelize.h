@@ -47,17 +47,17 @@ struct Voxelized {
 /// are not finite or a point).
 Result<VoxelGrid> grid_around(const Box3d& bounds, std::uint32_t resolution, std::uint32_t margin = 1);
 
-/// A grid of just these counts whose voxels fill `bounds` exactly, as paper 000 takes it (section 2.3); voxels may have
-/// any aspect. Errors as above.
+/// A grid of just these counts whose voxels fill `bounds` exactly, as [voxel-lod] takes it (section 2.3); voxels may
+/// have any aspect. Errors as above.
 Result<VoxelGrid> grid_over(const Box3d& bounds, const std::array<std::uint32_t, 3>& resolution);
 
 /// Solid voxels of a surface by crossings along z. Vertices are rounded to 1/256 voxel in x and y, where all decisions
 /// are whole-number ones: a line through a vertex or along an edge meets exactly one of the triangles beside it (the
-/// half-open rule, in place of the nudging of paper 000, section 2.3.3), so a closed surface never leaks. The depth of
-/// a crossing is in single precision. Same bits for any thread count. O(triangles + voxels / 64), memory an
-/// eighth of a byte a voxel and some 12 bytes a triangle, with `nonzero` 8 more a crossing; `winding`: some
-/// microseconds for each of three voxels or so between two crossings. Errors: bad_argument (a grid without voxels, or
-/// with sides above 65,535; those of validate()), cancelled.
+/// half-open rule, in place of the nudging of [voxel-lod], section 2.3.3), so a closed surface never leaks. The depth
+/// of a crossing is in single precision. Same bits for any thread count. O(triangles + voxels / 64), memory an eighth
+/// of a byte a voxel and some 12 bytes a triangle, with `nonzero` 8 more a crossing; `winding`: some microseconds for
+/// each of three voxels or so between two crossings. Errors: bad_argument (a grid without voxels, or with sides above
+/// 65,535; those of validate()), cancelled.
 Result<Voxelized> voxelize(const spatial::Surface& surface, const VoxelGrid& grid, const VoxelizeOptions& options = {},
                            Task task = {});
 

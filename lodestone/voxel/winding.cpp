@@ -1,3 +1,12 @@
+// Winding numbers: how often a surface, closed or not, goes around a point.
+//
+// Source: A. Jacobson et al., 2013 [jacobson-2013]: the sum of the solid angles of all triangles, over 4 pi; for groups
+// that are far away only a dipole, G. Barill et al., 2018 [barill-2018], first order.
+// 1. AngleSum: solid angles (A. Van Oosterom and J. Strackee, 1983 [van-oosterom-1983]) added up as arguments of
+//    complex numbers, so that many of them need one arc tangent.
+// 2. in_order(), group_of(): triangles by size and along a Hilbert curve; groups of four, of sixteen, and so on.
+// 3. WindingNumber::at(): down the groups; a group is far when its centre is more than twice its radius away.
+// Invariants: no libm but sqrt; the same figures for any thread count. Cost: O(n log n) to build.
 #include "lodestone/voxel/winding.h"
 
 #include <algorithm>

@@ -131,6 +131,13 @@ TEST(Validate, logs_fit_their_mesh) {
   log.collapses[0].position.y = std::numeric_limits<float>::quiet_NaN();
   test::expect_bad_argument(validate(log, mesh), "position");
   log = log_of_a_cube();
+  log.collapses[0].removed = log.collapses[0].kept;
+  test::expect_bad_argument(validate(log, mesh), "one vertex");
+  log = log_of_a_cube();
+  log.collapses[0].faces = 13;
+  test::expect_refused(validate(log, mesh), "collapse log: 13 triangles vanish of 12 at the start, the mesh has 12",
+                       "faces");
+  log = log_of_a_cube();
   log.collapses[0].first_wedge = 2;
   test::expect_bad_argument(validate(log, mesh), "first wedge");
   log = log_of_a_cube();

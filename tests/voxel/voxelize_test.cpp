@@ -35,7 +35,7 @@ TEST(Voxelize, box_with_its_faces_on_centres) {
   }
 }
 
-// The cases of paper 000, table 2-1, of a triangle and a plane of samples, on closed shapes: (a) no corner on it, (b)
+// The cases of [voxel-lod], table 2-1, of a triangle and a plane of samples, on closed shapes: (a) no corner on it, (b)
 // one corner on it and the far side across, (c) one corner touching, (d) a side on it, (e) all of it.
 TEST(Voxelize, corners_sides_and_faces_on_planes_of_samples) {
   const Mesh tetrahedron =

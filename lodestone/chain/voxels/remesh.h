@@ -1,4 +1,4 @@
-// New surfaces of models by way of voxels (paper 000): whatever the input, closed and manifold.
+// New surfaces of models by way of voxels ([voxel-lod]): whatever the input, closed and manifold.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ struct RemeshResult {
 };
 
 /// Voxelizes the model's default scene and contours it. A count is predicted from coarser runs, as triangles grow with
-/// the square of the resolution (paper 000, section 3.4); an error is found by measuring. Errors: bad_argument (both
+/// the square of the resolution ([voxel-lod], section 3.4); an error is found by measuring. Errors: bad_argument (both
 /// targets; then_collapse without one; a resolution beside a target without it; options out of range; those of
 /// validate()), empty, out_of_memory, cancelled.
 Result<RemeshResult> remesh(const Model& model, const RemeshOptions& options = {}, Task task = {});

@@ -1,4 +1,4 @@
-// Ladders whose levels are new surfaces by way of voxels (paper 000).
+// Ladders whose levels are new surfaces by way of voxels ([voxel-lod]).
 #pragma once
 
 #include <cstdint>

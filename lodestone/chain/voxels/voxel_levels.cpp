@@ -1,4 +1,4 @@
-// Paper 000's order of work: the model is voxelized once, finely (section 2.2), and every level comes from that solid.
+// The order of work of [voxel-lod], section 2.2: the model is voxelized once, finely, and each level comes from that.
 //
 // 1. create(): a Solid (chain/solid) of at least `supersample` voxels a voxel of the finest level. Where it does not
 //    fit into memory, only the surface is kept and voxels are made slab by slab when a level is asked for.

@@ -1,4 +1,4 @@
-// Surfaces of one model at any resolution, all from one solid voxelization (paper 000).
+// Surfaces of one model at any resolution, all from one solid voxelization ([voxel-lod] in docs/papers/README.md).
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ struct VoxelOptions {
   VertexPlacement placement = VertexPlacement::project;
   bool keep_thin = false;  ///< what is thinner than a voxel of the level stays, at least that thick before projection
   /// Triangles are merged where the surface is flat, as far as it moves by about this share of a voxel; 0 = not. Even
-  /// cells take as many in flat parts as in curved ones (paper 000, section 3.5.2): this takes fewer there, without a
+  /// cells take as many in flat parts as in curved ones ([voxel-lod], section 3.5.2): this takes fewer there, without a
   /// crack, as edges are collapsed.
   double adaptive = 0;
   bool keep_volume = false;  ///< linear only: each level's iso is chosen so that it encloses the solid's volume

@@ -29,7 +29,7 @@ struct VoxelCut {
 };
 
 /// The finest resolution that a target needs, from quick coarse solids: triangles grow with the square of the
-/// resolution (paper 000, section 3.4). Errors: those of VoxelLevels.
+/// resolution ([voxel-lod], section 3.4). Errors: those of VoxelLevels.
 Result<std::uint32_t> finest_for(const Model& model, const VoxelOptions& options, const VoxelTarget& target,
                                  const Task& task);
 

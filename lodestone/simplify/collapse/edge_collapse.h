@@ -20,7 +20,7 @@ namespace lodestone::simplify {
 
 /// What attributes count when edges are chosen, each a multiple of its default; 0 = they follow without a say. By
 /// default a texture that slides over the surface counts like a displacement of 0.3 times as much, the whole range of a
-/// colour or a number like a displacement of 1 % of the diagonal (`color` is the weight alpha of paper 004), a normal
+/// colour or a number like a displacement of 1 % of the diagonal (`color` is alpha of [lod-survey]), a normal
 /// that turns by one radian like 0.2 % of it, and a displacement of a morph target like any other.
 struct AttributeWeights {
   float normal = 1, uv = 1, color = 1, morph = 1, generic = 1;
@@ -41,7 +41,7 @@ struct EdgeCollapseOptions {
   /// simplified as it is seen. Its translation is ignored; a singular one counts as identity.
   Mat4d metric;
   /// No collapse may leave two triangles at an edge whose dihedral angle is below the angle of this cosine where there
-  /// was none (threshold beta of paper 001, section 3.2); 1 = any fold is allowed. 10 degrees. Once no other collapse
+  /// was none (beta of [progressive-mesh], section 3.2); 1 = any fold is allowed. 10 degrees. Once no other collapse
   /// is left anywhere, angles down to 0.1 degrees are allowed: thin bars end in blades.
   float fold_cosine = 0.98481F;
   bool record_log = false;         ///< fill EdgeCollapseResult::log

@@ -215,7 +215,7 @@ bool Sweeper::folds_outwards() const {
   return false;
 }
 
-// True if the collapse folds the surface (paper 001, section 3.2: no dihedral angle below a limit) where it was not.
+// True if the collapse folds the surface where it was not ([progressive-mesh], 3.2: no dihedral angle below a limit).
 bool Sweeper::folds() const {
   if (folds_outwards()) return true;
   if (!has_fold(corners_, [&](std::size_t i) { return normals_[i]; })) return false;
