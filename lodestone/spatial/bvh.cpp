@@ -1,3 +1,15 @@
+// A tree of boxes over triangles, for closest points and for boxes that overlap.
+//
+// The surface's triangles lie along a Hilbert curve already, so the tree is its order cut into fours, level by level
+// (level_sizes(), fill_level()): no sorting, no pointers, children of a node are four boxes side by side that one
+// instruction compares. Long thin triangles, whose boxes are mostly empty, have several (thin_pieces_detail.h).
+//
+// search() goes down from the root, nearest child first, with a stack of what is left; a child is left out when its box
+// is farther than the best so far. closest(), closest_facing() and all_within() differ in what they take and when they
+// stop. triangles_in() lists what reaches into a box.
+//
+// Boxes are floats, rounded outward by kMargin so that rounding never hides a triangle; triangles are tested in double.
+// So distances are exact in double precision, whatever the hint. Built in O(n), the same for any number of threads.
 #include "lodestone/spatial/bvh.h"
 
 #include <algorithm>

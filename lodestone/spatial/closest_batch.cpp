@@ -1,3 +1,15 @@
+// Closest points for thousands of points at once, several times faster than one by one.
+//
+// 1. sort(): points along a Hilbert curve through their box, so that eight in a row lie near each other.
+// 2. find_group(): the triangles that could be nearest to any of the eight are looked up once, by a box around the
+//    group that is as large as the group before had to look, and a little more (kFarther).
+// 3. test_near(): all of them against four points at a time in single precision, as an interval: `lowest_` and
+//    `highest_`, wider for slivers, whose planes single precision does not know (kSliver).
+// 4. The few triangles whose interval reaches below the best upper bound are tested again in double.
+// Groups that are spread wider than the triangles around them, or meet too many, ask the tree point by point: find().
+//
+// Single precision decides only what is left out, with kRounding as its bound, so answers are those of Bvh::closest().
+// Which triangle is named among equally near ones does not depend on threads, as groups are cut by the caller's chunks.
 #include "lodestone/spatial/closest_batch.h"
 
 #include <algorithm>

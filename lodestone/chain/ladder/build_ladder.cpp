@@ -1,5 +1,18 @@
-// Method   one collapse run a mesh -> merged order -> a prefix a level -> measured against the original in world space
-// Targets  counts by the record alone; errors by bisection over prefixes, each probe replayed and measured
+// The main job: a model in, a ladder of levels out, each with its error measured against the original.
+//
+// build_ladder():
+// 1. CollapsePlan::create() collapses each drawn mesh once and merges the collapses of all by error, so that every
+//    level is a prefix of one order; measure::Reference prepares the original, in world space.
+// 2. add_count_levels(): counts and ratios are looked up in that order. Each level is made and measured; one whose
+//    error is out of line with the curve of those before it (keep_in_line()) gives way to the coarsest that is in line,
+//    and the ladder ends there, unless `force` is set. add_error_levels(): for an error the coarsest prefix whose
+//    measured maximum is within it (find_error_cut()).
+// 3. compare_pictures(), where pictures are asked for.
+// simplify_model() is the same for one level; screen_coverages() are the switch points that MSFT_lod wants.
+//
+// Errors never fall along a ladder (add_level()). What could not be reached is a Shortfall with its cause, never a
+// silent success. The record of collapses does not depend on the targets, so a level is the same whatever else was
+// asked for.
 #include "lodestone/chain/ladder/build_ladder.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,17 @@
-// Method   measured error -> importance weights -> collapse again, the best round kept; then vertices fitted and
-//          triangles shifted; or, for an error to hold, fewer and fewer triangles, certified at each step
-// Source   docs/papers/measured-feedback.md
+// Levels improved by their own measured error, see docs/papers/measured-feedback.md.
+//
+// A level from edge collapse alone is good where costs judged well. Measuring it tells where they did not, and that is
+// put right in one of two ways:
+// - weighted() (effort normal): the start is collapsed again, vertices near the worst triangles weighing more, twice.
+// - fitted() (effort best): vertices are moved and edges turned to where squared distances are least [hoppe-1993]; then
+//   redistribute_rounds() splits where it is worst and collapses where triangles are missed least; at last
+//   meet_volume().
+// With a goal for the error, fewest_within_goal() then takes a tenth of the triangles away at a time: within_goal()
+// holds vertices where collapses led beyond the goal and tries again, and holds_goal() certifies each step.
+//
+// The best level so far is always kept, so a round can't make it worse: the maximum falls, the mean stays within
+// limits, and no fault (triangles that cross or fold) is added. What may not move, collapse or be split is known by the
+// vertices' names, see NamedMesh. The same bytes for any number of threads. O(rounds * n log n).
 #include <algorithm>
 #include <optional>
 #include <tuple>

@@ -1,8 +1,15 @@
-// One pass: quadrics, the cost up to which this pass goes, sweeps, the record, compaction.
+// One pass of edge collapse over the whole mesh: the cheapest share of the edges goes, everywhere at once.
 //
-// Each range of vertices is swept apart, in parallel: an edge is its own when the rings of both ends lie in it, so that
-// it meets no other range's work. Then one sweep takes the edges that cross ranges. The record tells all by cost, a
-// step never before one that it builds on: any prefix is a mesh from which the cheapest edges are gone everywhere.
+// 1. prepare(): quadrics of all vertices, and which of them have their whole ring in their range of vertices.
+// 2. cost_limit(): the cost below which about `share` of the edges lie, from a sample of the vertices.
+// 3. sweep_first(): each range is swept apart, in parallel: an edge is its own when the rings of both ends lie in it,
+//    so that it meets no other range's work. sweep_second() does the same for ranges half a range on, after
+//    renew_quadrics(); sweep_rest() takes the edges that cross both cuts, on one thread.
+// 4. append_steps(): the record tells all by cost, a step never before one that it builds on: any prefix is a mesh from
+//    which the cheapest edges are gone everywhere.
+// 5. compact(): what is gone is cleared away, in order, so that the next pass runs over dense arrays.
+//
+// Ranges are cut by vertex numbers alone, so the record is the same for any number of threads. O(n) a pass.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,21 @@
+// How far a level is from its original, kept up to date while the level changes.
+//
+// A correspondence joins a point of the level to a point of the original: points of the original to the closest point
+// of the level, and points of each triangle of the level to the closest point of the original. Their weights are shares
+// of area, so sums over them stand for integrals over both surfaces (docs/papers/measured-feedback.md).
+//
+// find_correspondences():
+// 1. tie_points(): every stride_for()-th point of the original asks the level's tree.
+// 2. tie_level(): three inner points of each triangle ask the original's tree; sort_by_triangle() groups all.
+// 3. probe_corners(): the distance of each vertex, for the maximum; add_up(): mean, maximum and energy, in a fixed
+//    order.
+// With a level that is Known, same_triangles() finds what both have in common; keep_points() and keep_level() look
+// again only where a NearMask of the new triangles says that a partner could have changed. The result is that of asking
+// anew. update_correspondences() does the same for edges that have been turned. probe_worst_errors() looks closer at
+// triangles whose error comes near the maximum: lattices of points on each, coarse and then fine, never twice on the
+// same triangle.
+//
+// The same bytes for any number of threads. O((points + triangles) log triangles).
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -1,3 +1,17 @@
+// More triangles where a level is farthest from its original.
+//
+// The worst triangles first (split_worst()), each gets one of three changes, by where on it the largest distance was
+// found:
+// - near a corner, the vertex itself is pulled half way to the original: pull_in();
+// - near a side, the side is split, and so is the triangle beyond it: split_side();
+// - else a vertex goes into the triangle: split_face().
+// The new vertex goes all the way to the original, or half or a fourth of it, where a face would turn by more than some
+// 70 degrees (looks_alike()) or cross another (crosses()); where that fails, too, the triangle stays. finish() mixes
+// the attributes of the corners and carries over what differs on the original (carry_attributes()).
+//
+// No triangle is changed twice, so everything is judged by the level as it was. Vertices on seams, between materials or
+// where the surface is not manifold are not pulled, edges of three triangles and more not split. Old vertices keep their
+// numbers, new ones follow. O(n log n).
 #include "lodestone/simplify/fit/split_worst.h"
 
 #include <algorithm>
