@@ -2,6 +2,7 @@
 include(CMakePackageConfigHelpers)
 
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/lodestone)
+install(FILES lodestone/lodestone.h lodestone/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lodestone)
 install(EXPORT lodestone-targets NAMESPACE lodestone:: DESTINATION ${config_dir})
 configure_package_config_file(cmake/lodestone-config.cmake.in ${PROJECT_BINARY_DIR}/lodestone-config.cmake
   INSTALL_DESTINATION ${config_dir})

@@ -5,7 +5,8 @@ set -eu
 build=$1
 compiler=$2
 shift 2
-example=$(cd "$(dirname "$0")/../../examples/measure_levels" && pwd)
+examples=$(cd "$(dirname "$0")/../../examples" && pwd)
+example=$examples/measure_levels
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
@@ -38,6 +39,12 @@ PKG_CONFIG_PATH=$(dirname "$pc") && export PKG_CONFIG_PATH
 # shellcheck disable=SC2046
 "$compiler" "$@" -std=c++20 "$example/main.cpp" $(pkg-config --cflags --libs lodestone) -o "$scratch/by_hand"
 "$scratch/by_hand" "$scratch/sphere.ply" >"$scratch/by_pkg_config"
+
+"$compiler" "$@" -std=c++20 "$examples/arrays/main.cpp" $(pkg-config --cflags --libs lodestone) -o "$scratch/arrays"
+"$scratch/arrays" >"$scratch/of_arrays" 2>/dev/null
+cat "$scratch/of_arrays"
+[ "$(wc -l <"$scratch/of_arrays")" -eq 5 ]
+[ "$(head -n 1 "$scratch/of_arrays")" = " 10201 vertices,  20000 triangles, at most 0 from the original" ]
 
 cat "$scratch/by_cmake"
 cmp "$scratch/by_cmake" "$scratch/by_pkg_config"
