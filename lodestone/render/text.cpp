@@ -72,11 +72,10 @@ const Glyph& glyph_of(char letter) {
 
 }  // namespace
 
-void fill_box(Pixels& pixels, std::int32_t x, std::int32_t y, std::int32_t width, std::int32_t height,
-              const std::array<std::uint8_t, 3>& color, std::uint32_t opacity) {
+void fill_box(Pixels& pixels, const PixelBox& box, const std::array<std::uint8_t, 3>& color, std::uint32_t opacity) {
   const auto columns = static_cast<std::int32_t>(pixels.width), rows = static_cast<std::int32_t>(pixels.height);
-  for (std::int32_t row = std::max(y, 0); row < std::min(y + height, rows); ++row) {
-    for (std::int32_t column = std::max(x, 0); column < std::min(x + width, columns); ++column) {
+  for (std::int32_t row = std::max(box.y, 0); row < std::min(box.y + box.height, rows); ++row) {
+    for (std::int32_t column = std::max(box.x, 0); column < std::min(box.x + box.width, columns); ++column) {
       std::uint8_t* p =
           pixels.rgba.data() + (static_cast<std::size_t>(row) * pixels.width + static_cast<std::size_t>(column)) * 4;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -87,14 +86,15 @@ void fill_box(Pixels& pixels, std::int32_t x, std::int32_t y, std::int32_t width
   }
 }
 
-void draw_text(Pixels& pixels, std::string_view text, std::int32_t x, std::int32_t y, std::int32_t scale,
-               const std::array<std::uint8_t, 3>& color) {
+void draw_text(Pixels& pixels, std::string_view text, const TextPlace& at, const std::array<std::uint8_t, 3>& color) {
+  const std::int32_t scale = at.scale;
+  std::int32_t x = at.x;
   for (const char letter : text) {
     const Glyph& glyph = glyph_of(letter);
     for (std::int32_t row = 0; row < kGlyphHeight; ++row) {
       for (std::int32_t column = 0; column < kGlyphWidth; ++column) {
         if ((glyph.rows[static_cast<std::size_t>(row)] >> (kGlyphWidth - 1 - column) & 1) == 0) continue;
-        fill_box(pixels, x + column * scale, y + row * scale, scale, scale, color);
+        fill_box(pixels, {x + column * scale, at.y + row * scale, scale, scale}, color);
       }
     }
     x += kGlyphAdvance * scale;

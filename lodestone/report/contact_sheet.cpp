@@ -128,7 +128,7 @@ void paste(const Pixels& picture, Pixels& sheet, std::uint32_t left, std::uint32
 void write_line(Pixels& sheet, std::string text, std::uint32_t left, std::uint32_t top, const SheetOptions& options) {
   const std::size_t fits = options.picture.width / static_cast<std::uint32_t>(render::kGlyphAdvance * kTextScale);
   if (text.size() > fits) text.resize(fits);
-  render::draw_text(sheet, text, static_cast<std::int32_t>(left), static_cast<std::int32_t>(top), kTextScale, kInk);
+  render::draw_text(sheet, text, {static_cast<std::int32_t>(left), static_cast<std::int32_t>(top), kTextScale}, kInk);
 }
 
 }  // namespace

@@ -258,7 +258,7 @@ Result<ReplayResult> CollapsePlan::mesh_after(std::size_t m, const Progress& pro
   Result<ReplayResult> out = replay(mesh(m), logs_[m], progress.collapses, options, task);
   LODESTONE_TRY(out);
   if (keep_area_) {
-    simplify::grow_parts(mesh(m), thin, area, error, placings_[m], out->origin, out->mesh);
+    simplify::grow_parts(mesh(m), thin, {area, error, placings_[m]}, out->origin, out->mesh);
   }
   if (options.untouched.empty()) finish(out->mesh);
   return out;

@@ -136,7 +136,7 @@ Result<NamedLevel> redistribute_triangles(const FeedbackSource& source, const Na
   std::vector<std::uint8_t> pulled(split.mesh.vertex_count(), 0);
   for (const std::uint32_t v : split.pulled) pulled[v] = 1;
   const std::vector<std::uint8_t> still = unmoved(made->mesh, origin, split.mesh);
-  NamedLevel next{TrackedLevel(source.target, std::move(made->mesh), task, &level.level), names_after(names, origin)};
+  NamedLevel next{TrackedLevel(source.target, std::move(made->mesh), level.level, task), names_after(names, origin)};
   const std::vector<std::uint8_t> kept = of_original(next.names, locked);
   const std::vector<std::uint8_t> no_move = still_held(next.level.mesh(), next.names, options.no_move);
   for (std::size_t v = 0; v < fit.no_move.size(); ++v) {

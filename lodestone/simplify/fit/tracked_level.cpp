@@ -115,9 +115,10 @@ struct TrackedLevel::State {
   }
 };
 
-TrackedLevel::TrackedLevel(const FitTarget& target, Mesh level, const Task& task, const TrackedLevel* known)
-    : state_(std::make_unique<State>(target, std::move(level), task,
-                                     known != nullptr ? &known->state_->known : nullptr)) {}
+TrackedLevel::TrackedLevel(const FitTarget& target, Mesh level, const Task& task)
+    : state_(std::make_unique<State>(target, std::move(level), task, nullptr)) {}
+TrackedLevel::TrackedLevel(const FitTarget& target, Mesh level, const TrackedLevel& known, const Task& task)
+    : state_(std::make_unique<State>(target, std::move(level), task, &known.state_->known)) {}
 TrackedLevel::TrackedLevel(const TrackedLevel& other) : state_(std::make_unique<State>(*other.state_)) {}
 TrackedLevel& TrackedLevel::operator=(const TrackedLevel& other) {
   state_ = std::make_unique<State>(*other.state_);

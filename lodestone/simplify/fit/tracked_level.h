@@ -25,7 +25,8 @@ class TrackedLevel {
  public:
   /// Measures a level. Where it has triangles in common with one that is known, only what the others change is measured
   /// anew. O(n log n). The target must outlive it.
-  TrackedLevel(const FitTarget& target, Mesh level, const Task& task, const TrackedLevel* known = nullptr);
+  TrackedLevel(const FitTarget& target, Mesh level, const Task& task);
+  TrackedLevel(const FitTarget& target, Mesh level, const TrackedLevel& known, const Task& task);
   TrackedLevel(const TrackedLevel& other);
   TrackedLevel& operator=(const TrackedLevel& other);
   TrackedLevel(TrackedLevel&&) noexcept;

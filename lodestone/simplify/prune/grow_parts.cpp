@@ -120,13 +120,15 @@ void change_stream(AttributeStream& stream, const Mesh& mesh, const std::vector<
 
 }  // namespace
 
-void grow_parts(const Mesh& original, const PruneOrder& thin, const std::vector<double>& area_of_part, double most,
-                const Mat4d& metric, const std::vector<std::uint32_t>& origin, Mesh& mesh) {
+void grow_parts(const Mesh& original, const PruneOrder& order, const GrowTargets& targets,
+                const std::vector<std::uint32_t>& origin, Mesh& mesh) {
+  const Mat4d& metric = targets.metric;
   if (metric.determinant3() == 0) return;  // drawn flat: there is no way back from there
-  const std::vector<std::uint32_t> part_of = parts_of_vertices(original, thin.parts, origin, mesh);
-  const std::vector<PartMeasure> measures = measure(mesh, part_of, thin.parts.count, metric);
-  const std::vector<double> steps = steps_for(mesh, part_of, measures, thin.no_prune, area_of_part, most, metric);
-  std::vector<Enlarging> enlargings(thin.parts.count);
+  const std::vector<std::uint32_t> part_of = parts_of_vertices(original, order.parts, origin, mesh);
+  const std::vector<PartMeasure> measures = measure(mesh, part_of, order.parts.count, metric);
+  const std::vector<double> steps =
+      steps_for(mesh, part_of, measures, order.no_prune, targets.area_of_part, targets.most, metric);
+  std::vector<Enlarging> enlargings(order.parts.count);
   for (std::size_t p = 0; p < enlargings.size(); ++p) enlargings[p] = enlarging(measures[p].shape(), steps[p], metric);
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
     const std::uint32_t p = part_of[v];

@@ -27,7 +27,7 @@ Grown grown(const Mesh& mesh, double times, double most, const Mat4d& metric = {
   std::vector<std::uint32_t> origin(mesh.triangles.size());
   std::iota(origin.begin(), origin.end(), 0U);
   Grown out{mesh};
-  grow_parts(mesh, thin, area, most, metric, origin, out.mesh);
+  grow_parts(mesh, thin, {area, most, metric}, origin, out.mesh);
   out.area = area_of(out.mesh) / area_of(mesh);
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
     out.moved = std::max(out.moved, length(out.mesh.position(v) - mesh.position(v)));
