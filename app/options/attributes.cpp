@@ -45,8 +45,8 @@ OptionGroup level_attributes_group() {
             "NAME=W,...",
             "",
             "",
-            "what errors of attributes count, as a multiple of the usual: normal, uv, color, morph, generic, or a "
-            "stream's name such as COLOR_1; 0 = follow without a say",
+            "how much errors of attributes count, as a multiple of the default: normal, uv, color, morph, generic, or "
+            "a stream's name such as COLOR_1; 0 = not at all",
             {},
             Completion::none},
            {"--influences",
@@ -54,7 +54,7 @@ OptionGroup level_attributes_group() {
             "N",
             "4",
             "joints",
-            "most joints that pull at a vertex of a coarser level, the heaviest; 0 = as many as there are",
+            "most skin joints that a vertex of a coarser level keeps, those of the largest weights; 0 = all",
             {},
             Completion::none},
            {"--tangents",
@@ -62,7 +62,8 @@ OptionGroup level_attributes_group() {
             "HOW",
             "keep",
             "",
-            "keep: the original's, for which normal maps were made; rebuild: from normals and UVs; drop: none",
+            "tangents of coarser levels. keep: the original's, which normal maps were made for; rebuild: computed from "
+            "normals and UVs; drop: none",
             {"keep", "rebuild", "drop"},
             Completion::choices}}};
 }

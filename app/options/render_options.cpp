@@ -134,7 +134,7 @@ OptionGroup look_group() {
             "what colours mean; without: textured if there are textures, else color if there are vertex colours, else "
             "smooth",
             shadings, Completion::choices},
-           {"--wireframe", "", "", "", "", "the triangles' sides on top", {}, Completion::none},
+           {"--wireframe", "", "", "", "", "draw the triangles' edges on top", {}, Completion::none},
            {"--background",
             "",
             "C",

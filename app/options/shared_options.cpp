@@ -52,10 +52,11 @@ OptionGroup ladder_target_group() {
         "D,...",
         "",
         "length: model units, or 5m",
-        "one level for each distance: the coarsest that is good for --pixels from there",
+        "one level for each viewing distance: the coarsest whose error covers at most --pixels on the screen from "
+        "there",
         {},
         Completion::none},
-       {"--pixels", "", "P", "1", "pixels", "what --distances allow", {}, Completion::none}}};
+       {"--pixels", "", "P", "1", "pixels", "how large an error may look from --distances", {}, Completion::none}}};
 }
 
 OptionGroup view_group() {
@@ -87,9 +88,10 @@ OptionGroup effort_group() {
             "HOW",
             "",
             "",
-            "fast: edge collapse; normal: again with weights where it is worst, 4 times as long; best: fitted, 20 "
-            "times, for "
-            "an error more, and half of the triangles (without: normal for ladders and errors, fast for counts)",
+            "how much work each level is worth. fast: edge collapse alone; normal: collapsed again with more triangles "
+            "where the error is largest, about 4 times as long; best: vertices moved as well, about 20 times as long, "
+            "for an error even more, but with about half of the triangles (without: normal for ladders and errors, "
+            "fast for counts)",
             {"fast", "normal", "best"},
             Completion::choices}}};
 }
@@ -127,7 +129,7 @@ OptionGroup measuring_group(std::uint64_t samples) {
             "N",
             fmt::format("{}", samples),
             "points",
-            "samples on each surface; all vertices come on top",
+            "points sampled on each surface, besides all vertices",
             {},
             Completion::none},
            {"--seed",
@@ -147,7 +149,7 @@ OptionGroup with_image_error(OptionGroup group) {
        "",
        "",
        "",
-       "read each level back from what was written, measure it again, and fail if it is not as told",
+       "read every level back from the written files, measure it again, and fail if it differs from what was told",
        {},
        Completion::none});
   group.options.push_back({"--image-error",
@@ -261,10 +263,10 @@ OptionGroup general_group() {
             "",
             "",
             "",
-            "tell errors alone: no table, no progress, no notes; JSON is printed all the same",
+            "print errors only: no table, progress or notes (JSON is still printed)",
             {},
             Completion::none},
-           {"--verbose", "-v", "", "", "", "tell decisions and details", {}, Completion::none},
+           {"--verbose", "-v", "", "", "", "also print decisions and details", {}, Completion::none},
            {"--help", "-h", "", "", "", "this text", {}, Completion::none}}};
 }
 

@@ -32,12 +32,12 @@ VerbSpec build_spec() {
        with_image_error(measuring_group(kBuildSamples)), with_report(output_group(true)), general_group()},
       {{"lod build statue.ply -o statue.glb", "five levels in one GLB (MSFT_lod), each with half the triangles"},
        {"lod build statue.ply -o statue_LOD{level}.obj --error 0.05%,0.2%,1%",
-        "a file a level, each within a measured error"},
+        "one file for each level, each within a measured error"},
        {"lod build models/ -o lods/ --ratio 50%,10% --json", "every model in a folder"}},
       "OUTPUT is name.glb or name.gltf (all levels in one file), name_LOD{level}.obj (any format, a file a level), or "
       "a "
       "folder with a slash at its end, where each input becomes name.glb. Several inputs, or a folder of them, need "
-      "a folder; a bad file is told and the others go on. In OUTPUT {name} stands for the input's name.",
+      "a folder; a bad file is reported and the others go on. In OUTPUT {name} stands for the input's name.",
       run_build};
 }
 
@@ -56,24 +56,23 @@ VerbSpec simplify_spec() {
 }
 
 VerbSpec measure_spec() {
-  return {
-      "measure",
-      "Measures the distance between two surfaces, both ways; A is the original.",
-      {"A B", 2, 2, {}, Completion::file},
-      {with_bounded(measuring_group(kMeasureSamples)), attribute_group(), image_group(), unit_group(), result_group(),
-       general_group()},
-      {{"lod measure statue.ply small.ply", "how far apart they are"},
-       {"lod measure statue.ply small.ply --bounded 0.01%",
-        "the largest distance for certain, to within a ten-thousandth of the diagonal"},
-       {"lod measure tower.glb tower.ply --attributes", "scenes as drawn; normals, UVs and colours as well"}},
-      "Means, medians and the largest sample are over area-weighted samples, the last over all vertices, too; the "
-      "other two maxima "
-      "are the largest distance that was found by looking further, and a certified bound that none exceeds. Relative "
-      "figures are divided by "
-      "the diagonal of A's bounding box. --attributes compares at corresponding points: the angle between normals, the "
-      "distance between UVs, between vertex colours (RGB from 0 to 1), and between the colours that a viewer shows "
-      "(base colour, texture and vertex colour).",
-      run_measure};
+  return {"measure",
+          "Measures the distance between two surfaces, both ways; A is the original.",
+          {"A B", 2, 2, {}, Completion::file},
+          {with_bounded(measuring_group(kMeasureSamples)), attribute_group(), image_group(), unit_group(),
+           result_group(), general_group()},
+          {{"lod measure statue.ply small.ply", "how far apart they are"},
+           {"lod measure statue.ply small.ply --bounded 0.01%",
+            "the largest distance for certain, to within a ten-thousandth of the diagonal"},
+           {"lod measure tower.glb tower.ply --attributes", "scenes as drawn; normals, UVs and colours as well"}},
+          "Means and medians are over points sampled evenly by area; the largest sample is over these and all "
+          "vertices. The "
+          "other two maxima are the largest distance found by looking further, and a certified bound that no distance "
+          "exceeds. Relative figures are divided by the diagonal of A's bounding box. --attributes compares at "
+          "corresponding points: the angle between normals, the "
+          "distance between UVs, between vertex colours (RGB from 0 to 1), and between the colours that a viewer shows "
+          "(base colour, texture and vertex colour).",
+          run_measure};
 }
 
 VerbSpec render_spec() {
@@ -86,8 +85,8 @@ VerbSpec render_spec() {
            {"lod render statue.glb --level 1 --wireframe --view iso -o level1.png", "a ladder's level with its edges"},
            {"lod render statue.glb --sheet -o sheet.webp", "all levels of a ladder in one picture, with their errors"}},
           "Views are named by where the eye is, for someone who stands before the model: front is +z with y up, right "
-          "is +x. Faces seen from behind are drawn in a dull blue unless their material is double-sided. A numbers' "
-          "attribute (--shading heat --attribute NAME) is drawn with a legend.",
+          "is +x. Faces seen from behind are drawn in a dull blue unless their material is double-sided. Numbers "
+          "kept as an attribute (--shading heat --attribute NAME) are drawn with a legend.",
           run_render};
 }
 
@@ -102,10 +101,9 @@ VerbSpec remesh_spec() {
        {"lod remesh statue.glb -o fine.glb --resolution 200", "a finer one"},
        {"lod remesh statue.ply -o few.ply --triangles 2000 --then-collapse",
         "closed whatever the input, and 2,000 well placed triangles"}},
-      "The model is cut into voxels once, K times finer than asked; their shares in the larger ones are contoured at "
-      "a half (Marching Cubes), and the vertices moved onto the input. Normals and colours that the input has come "
-      "along, "
-      "as colours of vertices or, with --texture-size, in textures.",
+      "The model is filled with voxels once, K times finer than asked. How full the larger voxels are gives a surface "
+      "(Marching Cubes), whose vertices are moved onto the input. The input's normals and colours come along, at "
+      "vertices or, with --texture-size, in textures.",
       run_remesh};
 }
 

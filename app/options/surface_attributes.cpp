@@ -12,11 +12,18 @@ OptionGroup baked_group() {
             "N",
             "",
             "texels",
-            "make an atlas, and bake base colour and normal map of the input into textures of N x N (16 to 16,384; "
-            "without: normals and colours of vertices)",
+            "bake the input's base colour and normals into textures of N x N (16 to 16,384; without: normals and "
+            "colours at vertices)",
             {},
             Completion::none},
-           {"--no-attributes", "", "", "", "", "positions alone", {}, Completion::none}}};
+           {"--no-attributes",
+            "",
+            "",
+            "",
+            "",
+            "write positions only: no normals, colours or textures",
+            {},
+            Completion::none}}};
 }
 
 Result<chain::SurfaceAttributeOptions> surface_attributes(const Arguments& arguments) {

@@ -7,24 +7,25 @@
 namespace lodestone::app {
 
 OptionGroup voxel_method_group() {
-  OptionGroup group{"Levels by voxels",
-                    {{"--method",
-                      "",
-                      "M",
-                      "edge-collapse",
-                      "",
-                      "edge-collapse, or voxel: each level a new closed surface from one solid, whatever the input",
-                      {"edge-collapse", "voxel"},
-                      Completion::choices},
-                     {"--resolution",
-                      "",
-                      "N",
-                      "",
-                      "voxels",
-                      "with --then-collapse: along the longest side of the surface that is collapsed (without: by the "
-                      "first level)",
-                      {},
-                      Completion::none}}};
+  OptionGroup group{
+      "Levels by voxels",
+      {{"--method",
+        "",
+        "M",
+        "edge-collapse",
+        "",
+        "edge-collapse, or voxel: each level is a new closed surface made from voxels, whatever the input",
+        {"edge-collapse", "voxel"},
+        Completion::choices},
+       {"--resolution",
+        "",
+        "N",
+        "",
+        "voxels",
+        "with --then-collapse: resolution of the surface that is collapsed, along its longest side (without: chosen "
+        "for the first level)",
+        {},
+        Completion::none}}};
   for (const OptionSpec& option : solid_group().options) {
     if (option.name != "--close") group.options.push_back(option);
   }

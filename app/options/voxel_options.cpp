@@ -11,7 +11,7 @@ OptionGroup resolution_group() {
             "N",
             "128",
             "voxels",
-            "along the longest side, with a margin of one (4 to 16,384)",
+            "resolution along the longest side, with a margin of one voxel (4 to 16,384)",
             {},
             Completion::none}}};
 }
@@ -47,7 +47,7 @@ OptionGroup level_group() {
         "K",
         "",
         "voxels",
-        "voxels of the solid in one of the result, along each side (1 to 64; without: 4, or 2 with winding)",
+        "how many times finer the solid is than the result, along each side (1 to 64; without: 4, or 2 with winding)",
         {},
         Completion::none},
        {"--place",
@@ -55,8 +55,8 @@ OptionGroup level_group() {
         "HOW",
         "project",
         "",
-        "where vertices lie: project (on the input), sharp (there, and on its edges and corners), linear (as shares "
-        "of voxels say) or edge-ratio (by a march along edges)",
+        "where vertices lie: project (on the input), sharp (on the input, and on its edges and corners), linear "
+        "(interpolated between voxels) or edge-ratio (where a search along the voxels' edges meets the solid)",
         {"project", "sharp", "linear", "edge-ratio"},
         Completion::choices},
        {"--adaptive",
@@ -64,17 +64,17 @@ OptionGroup level_group() {
         "T",
         "",
         "voxels",
-        "merge triangles where the surface is flat, as far as it moves by about this share of a voxel (0.1)",
+        "merge triangles where the surface is flat, moving it by at most about this share of a voxel (0.1)",
         {},
         Completion::none},
-       {"--keep-thin", "", "", "", "", "what is thinner than a voxel stays", {}, Completion::none},
-       {"--keep-volume", "", "", "", "", "with --place linear: the volume stays", {}, Completion::none},
+       {"--keep-thin", "", "", "", "", "keep what is thinner than a voxel", {}, Completion::none},
+       {"--keep-volume", "", "", "", "", "with --place linear: keep the solid's volume", {}, Completion::none},
        {"--then-collapse",
         "",
         "",
         "",
         "",
-        "reach the target by collapsing edges of a finer surface by voxels: far better triangles for the count",
+        "make a finer surface and reach the target by edge collapse: far better triangles for the count",
         {},
         Completion::none}}};
 }
@@ -91,14 +91,15 @@ OptionGroup remesh_target_group() {
                            "the coarsest surface whose measured error is within it",
                            {},
                            Completion::none});
-  group.options.push_back({"--prune",
-                           "",
-                           "",
-                           "",
-                           "",
-                           "with --then-collapse: separate parts vanish where that errs no more than the surface does",
-                           {},
-                           Completion::none});
+  group.options.push_back(
+      {"--prune",
+       "",
+       "",
+       "",
+       "",
+       "with --then-collapse: let separate parts vanish where that adds no larger error than the surface has",
+       {},
+       Completion::none});
   return group;
 }
 
