@@ -1,4 +1,17 @@
-// Levels improved by their own measured error: collapsed again with weights where they are worst, then fitted.
+// Levels improved by their own measured error: weighted (effort normal) or fitted (effort best).
+//
+//   build_ladder(), simplify_model()
+//     CollapsePlan::create()            collapse_edges() once a mesh, prune_order(), merged by error
+//     LevelMaker::plain()               CollapsePlan::model_after(): a prefix replayed; then measured
+//     LevelMaker::with_feedback()       the better of plain() and
+//       CollapsePlan::model_with_feedback()
+//         apply_feedback()              for each mesh that allows it
+//           weighted()                  collapse_edges() again, weights from error_at_vertices()
+//           fitted()                    weighted() where there are borders, then
+//             TrackedLevel::fit()       vertices moved, edges turned
+//             redistribute_rounds()     redistribute_triangles(): split_worst(), collapse_edges(), fit() of what is new
+//             meet_volume()
+//           fewest_within_goal()        with an error to hold: redistribute_triangles(), certified at each step
 #pragma once
 
 #include <cstdint>
