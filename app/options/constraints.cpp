@@ -123,96 +123,104 @@ Result<std::optional<LengthArgument>> one_length(const Arguments& arguments, con
               fmt::format("such as {} 1mm", option));
 }
 
+std::vector<OptionSpec> vertex_options() {
+  return {
+      {"--keep-border", "", "", "", "", "open borders stay exactly as they are", {}, Completion::none},
+      {"--lock", "", "X,Y,Z,R", "", "model units", "vertices in this sphere stay where they are", {}, Completion::none},
+      {"--weld",
+       "",
+       "LENGTH",
+       "",
+       "model units",
+       "join vertices nearer than this before simplifying (1mm and 0.01% work, too); vertices at the same position "
+       "are joined anyway",
+       {},
+       Completion::none},
+      {"--join",
+       "",
+       "LENGTH",
+       "",
+       "model units",
+       "sew borders of separate parts together that are nearer than this before simplifying",
+       {},
+       Completion::none}};
+}
+
+std::vector<OptionSpec> part_options() {
+  return {
+      {"--prune",
+       "",
+       "",
+       "",
+       "",
+       "let separate parts vanish where that adds no larger error than the level has",
+       {},
+       Completion::none},
+      {"--keep-area",
+       "",
+       "",
+       "",
+       "",
+       "as --prune, and let the parts that stay grow to cover the area of those that went: for foliage and lattices",
+       {},
+       Completion::none},
+      {"--keep-parts",
+       "",
+       "",
+       "",
+       "",
+       "keep every part; without it, models of many thin parts (trees, towers) whose levels would leave each only a "
+       "few triangles are built with --keep-area",
+       {},
+       Completion::none}};
+}
+
+std::vector<OptionSpec> other_options() {
+  return {
+      {"--force",
+       "",
+       "",
+       "",
+       "",
+       "write the levels asked for by count, however large their errors; without it, a ladder ends before an error "
+       "that is more than twice what the finer levels lead one to expect",
+       {},
+       Completion::none},
+      {"--only",
+       "",
+       "FILE",
+       "",
+       "",
+       "change only the triangles listed in FILE, one number (from 0) or range A-B a line; all others stay exactly as "
+       "they are",
+       {},
+       Completion::file},
+      {"--weight-by",
+       "",
+       "NAME",
+       "",
+       "",
+       "the vertex attribute that says how much each vertex matters: 1 is usual, 10 keeps about 3 times finer detail",
+       {},
+       Completion::none},
+      {"--weights",
+       "",
+       "FILE",
+       "",
+       "",
+       "spheres in which vertices matter more: lines of X Y Z RADIUS WEIGHT, or lock in place of WEIGHT",
+       {},
+       Completion::file}};
+}
+
 }  // namespace
 
 OptionGroup method_group() {
-  return {
-      "Method",
-      {{"--keep-border", "", "", "", "", "open borders stay exactly as they are", {}, Completion::none},
-       {"--lock",
-        "",
-        "X,Y,Z,R",
-        "",
-        "model units",
-        "vertices in this sphere stay where they are",
-        {},
-        Completion::none},
-       {"--weld",
-        "",
-        "LENGTH",
-        "",
-        "model units",
-        "join vertices nearer than this before simplifying (1mm and 0.01% work, too); vertices at the same position "
-        "are joined anyway",
-        {},
-        Completion::none},
-       {"--join",
-        "",
-        "LENGTH",
-        "",
-        "model units",
-        "sew borders of separate parts together that are nearer than this before simplifying",
-        {},
-        Completion::none},
-       {"--prune",
-        "",
-        "",
-        "",
-        "",
-        "let separate parts vanish where that adds no larger error than the level has",
-        {},
-        Completion::none},
-       {"--keep-area",
-        "",
-        "",
-        "",
-        "",
-        "as --prune, and let the parts that stay grow to cover the area of those that went: for foliage and lattices",
-        {},
-        Completion::none},
-       {"--keep-parts",
-        "",
-        "",
-        "",
-        "",
-        "keep every part; without it, models of many thin parts (trees, towers) whose levels would leave each only a "
-        "few triangles are built with --keep-area",
-        {},
-        Completion::none},
-       {"--force",
-        "",
-        "",
-        "",
-        "",
-        "write the levels asked for by count, however large their errors; without it, a ladder ends before an error "
-        "that is more than twice what the finer levels lead one to expect",
-        {},
-        Completion::none},
-       {"--only",
-        "",
-        "FILE",
-        "",
-        "",
-        "change only the triangles listed in FILE, one number (from 0) or range A-B a line; all others stay exactly as "
-        "they are",
-        {},
-        Completion::file},
-       {"--weight-by",
-        "",
-        "NAME",
-        "",
-        "",
-        "the vertex attribute that says how much each vertex matters: 1 is usual, 10 keeps about 3 times finer detail",
-        {},
-        Completion::none},
-       {"--weights",
-        "",
-        "FILE",
-        "",
-        "",
-        "spheres in which vertices matter more: lines of X Y Z RADIUS WEIGHT, or lock in place of WEIGHT",
-        {},
-        Completion::file}}};
+  OptionGroup group{"Method", vertex_options()};
+  for (const auto& options : {part_options(), other_options()}) {
+    group.options.insert(group.options.end(), options.begin(), options.end());
+  }
+  return group;
 }
 
 Result<ConstraintPlan> constraints_of(const Arguments& arguments, const LengthRules& lengths) {
