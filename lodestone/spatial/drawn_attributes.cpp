@@ -1,3 +1,13 @@
+// What a model's surface shows at a point: normals, texture coordinates and colours, as a viewer would draw them.
+//
+// DrawnAttributes() notes for each mesh which streams there are, and for each instance how its transform turns normals;
+// note_sets() lists the UV sets that anything drawn has. drawn_triangle() finds the instance, mesh, material group and
+// wedges of a triangle of the flattened surface, and the reading functions interpolate within it: stream_normal() and
+// normal() (the face's where there is none), uv() with the origin at the image's top, color() and light(): base colour
+// times texture times vertex colour, linear.
+//
+// A value is nothing where the primitive lacks the stream or a corner's number is not finite. Nothing is changed, so
+// any number of threads may read. O(log instances) a point.
 #include "lodestone/spatial/drawn_attributes.h"
 
 #include <algorithm>

@@ -1,3 +1,16 @@
+// Nearest points by a balanced tree whose shape depends on the number of points alone.
+//
+// KdTree() scales the points by a power of two (unit_of()), so that squares fit floats, and halves them level by level
+// along the longest side of each node's box (Builder::split(), in parallel); leaves hold at most sixteen. As every half
+// has the same size, nodes need no pointers, and no arrangement of points makes a leaf large or the tree deep.
+//
+// search() goes down from the root with a sorted list of the best so far; a node is left out when its box is farther
+// than the last of them. box_distance_sq() adds in the same order as a point's distance, so rounding never makes a box
+// look farther than a point in it. around() and nearest() start it from a point of the tree or from anywhere;
+// point_spacing() uses both.
+//
+// Equal coordinates are told apart by the points' numbers: the same answers for any number of threads. Built in O(n log
+// n).
 #include "lodestone/spatial/kd_tree.h"
 
 #include <algorithm>

@@ -1,3 +1,12 @@
+// The nearest part of a mesh whose parts vanish one after another.
+//
+// order_triangles() sorts triangles by part and, within it, along a Hilbert curve; build_part_trees() puts boxes over
+// fours of them, level by level, for each part; build_top_tree() does the same over the parts' own boxes. A query goes
+// down the top tree first, so a part that it must not find costs one test however large it is (part_tree.h has the
+// search). test_triangles() measures at the leaves, in double. remove() empties a part's box and renews those above it.
+//
+// Equally near parts are told apart by their numbers: the same for any number of threads. Built in O(n log n), a
+// removal in O(log n).
 #include "lodestone/spatial/part_tree.h"
 
 #include <algorithm>

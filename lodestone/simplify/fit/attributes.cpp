@@ -1,3 +1,13 @@
+// Attributes that follow vertices which fitting has moved, so that textures don't swim.
+//
+// carry_attributes() asks for each moved vertex where on the original its old and its new position are nearest
+// (chart_point()), and adds the difference of the original's values there to each of its wedges (carry()): normals,
+// texture coordinates, colours and other numbers. So what collapses have chosen to differ stays different. Nothing is
+// carried where the two points lie in different charts, or where a wedge's value is farther from the original's than
+// its neighbours are (reach()): the closest point is in somebody else's chart then. Normals come out with length 1,
+// colours within their range.
+//
+// Each wedge is worked on by itself: the same bytes for any number of threads. O(vertices log triangles).
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,13 @@
+// Edges turned over where the level comes nearer to its original by that [hoppe-1993].
+//
+// flip_edges() looks at each edge between two triangles and finds by how much turning it lowers the squared distances
+// of both (gain_of()). Not turned are edges where shape_allows() objects (faces that turn away from their old normals
+// or fold onto a neighbour, corners that become much sharper), where the points of the original lose, or where a point
+// of the new edge or triangles would be farther than the worst was. The best come first, no triangle twice a round, and
+// only if the new edge does not exist yet (joined()). The triangles keep their numbers, so what is known of others
+// stays.
+//
+// Gains are found in parallel, turns made in one order: the same bytes for any number of threads. O(triangles log n).
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,17 @@
+// A level that knows how far it is from its original, and can be fitted to it [hoppe-1993].
+//
+// Making one finds all correspondences (find_correspondences()) and looks closer where the error is largest
+// (probe_worst_errors()); with a known level only what differs is looked for. worst(), mean() and max() tell what was
+// found, faults() counts triangles that cross or fold, probe_error() takes a place where somebody else has measured
+// more.
+//
+// fit() repeats: turn edges (flip_edges()), solve for displacements of all vertices that lower the sum of squared
+// distances (solve_displacements()), apply them as far as no face turns away (apply_displacements()), find the
+// correspondences again. A round that does not lower the sum is taken back and ends it. Then, where asked, one move
+// along the normals meets the volume (volume_moves()), and attributes follow (carry_attributes()). Vertices of borders,
+// seams, material borders and what is not manifold (fixed_sides()) stay, as do those of FitOptions::no_move.
+//
+// The same bytes for any number of threads. O(solves * n log n).
 #include "lodestone/simplify/fit/tracked_level.h"
 
 #include <algorithm>
