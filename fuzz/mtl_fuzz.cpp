@@ -1,5 +1,5 @@
-// Any bytes as the MTL of an OBJ: materials that are valid, an MTL of them, and what glTF gets; never a crash, a hang, or
-// much memory.
+// Any bytes as the MTL of an OBJ: materials that are valid, an MTL of them, and what glTF gets; never a crash, a hang,
+// or much memory.
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>

@@ -40,14 +40,15 @@ struct MeshArrays {
 
 struct FromArraysOptions {
   /// Vertices at equal positions become one vertex, whose different attributes are wedges: seams of attributes are no
-  /// cracks then, and what no triangle uses goes. False: each vertex stays by itself, in its order, and a seam is an open
-  /// border, which collapses treat as one.
+  /// cracks then, and what no triangle uses goes. False: each vertex stays by itself, in its order, and a seam is an
+  /// open border, which collapses treat as one.
   bool weld = true;
 };
 
-/// A mesh that validate() accepts. Errors: bad_argument (no position array, indices that are no triples or name vertices
-/// that aren't there, a stride below the size of a tuple or no multiple of four, an attribute without values or of a kind
-/// that floats can't be, counts beyond 32 bits, positions that are not finite), cancelled. O(vertices + triangles).
+/// A mesh that validate() accepts. Errors: bad_argument (no position array, indices that are no triples or name
+/// vertices that aren't there, a stride below the size of a tuple or no multiple of four, an attribute without values
+/// or of a kind that floats can't be, counts beyond 32 bits, positions that are not finite), cancelled. O(vertices +
+/// triangles).
 Result<Mesh> from_arrays(const MeshArrays& arrays, const FromArraysOptions& options = {}, Task task = {});
 
 /// What to_arrays() returns: as many vertices as the mesh has wedges.
@@ -64,8 +65,8 @@ struct MeshBuffers {
   std::vector<Attribute> attributes;   ///< the mesh's, but for those that aren't floats
 };
 
-/// The mesh as arrays for drawing. from_arrays() of them gives the same positions, triangles and attributes. The mesh must
-/// be valid. O(wedges + triangles).
+/// The mesh as arrays for drawing. from_arrays() of them gives the same positions, triangles and attributes. The mesh
+/// must be valid. O(wedges + triangles).
 MeshBuffers to_arrays(const Mesh& mesh);
 
 }  // namespace lodestone

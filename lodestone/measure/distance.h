@@ -72,8 +72,8 @@ class Reference {
   /// O((samples + vertices) log triangles). Errors: bad_argument (those of validate()), empty, cancelled.
   Result<Distance> distance_to(const Model& level, const DistanceOptions& options = {}, Task task = {}) const;
 
-  /// distance_to(), with four times as many samples where a few spots make the whole mean, so that it depends on how many
-  /// of the samples hit them: where its relative standard error would be above 1 %. Errors: as distance_to().
+  /// distance_to(), with four times as many samples where a few spots make the whole mean, so that it depends on how
+  /// many of the samples hit them: where its relative standard error would be above 1 %. Errors: as distance_to().
   Result<Distance> steady_distance_to(const Model& level, const DistanceOptions& options = {}, Task task = {}) const;
 
   double diagonal() const;

@@ -49,7 +49,8 @@ struct Visit {
   std::uint32_t level, index;
 };
 
-// Rounding to float and subtracting in float can move a box's side by a few units of the largest coordinate's last place.
+// Rounding to float and subtracting in float can move a box's side by a few units of the largest coordinate's last
+// place.
 constexpr Vec3f kMargin{0x1p-21F, 0x1p-21F, 0x1p-21F};
 
 // Of children that are none: far away, so that no query goes there; infinities would make NaN.

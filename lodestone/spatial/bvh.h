@@ -19,8 +19,9 @@ struct Nearest {
 
 /// A packed tree: four children a node, the surface's Hilbert order cut into fours level by level, so nothing needs a
 /// pointer. Boxes are floats rounded outward, triangles are tested in double: the answer is exact in double precision.
-/// Build O(n), memory about 32 bytes a triangle. Where many triangles are long and thin, each of these has several boxes
-/// (thin_pieces_detail.h): O(n log n), and up to five times the memory and 36 MB. The surface must outlive the tree.
+/// Build O(n), memory about 32 bytes a triangle. Where many triangles are long and thin, each of these has several
+/// boxes (thin_pieces_detail.h): O(n log n), and up to five times the memory and 36 MB. The surface must outlive the
+/// tree.
 class Bvh {
  public:
   explicit Bvh(const Surface& surface, const Task& task = {});

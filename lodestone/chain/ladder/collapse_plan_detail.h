@@ -53,9 +53,9 @@ class CollapsePlan {
   /// The model after a prefix; documents, instances and materials shared with the original. O(model).
   Result<Model> model_after(std::size_t count, Task task) const;
 
-  /// As model_after(), with every mesh that allows it improved by its own measured error (apply_feedback()): those that are
-  /// drawn without being stretched, and of which no part vanishes and no triangle must stay. `targets` keeps what was
-  /// prepared for the next call; of this plan, empty at first.
+  /// As model_after(), with every mesh that allows it improved by its own measured error (apply_feedback()): those that
+  /// are drawn without being stretched, and of which no part vanishes and no triangle must stay. `targets` keeps what
+  /// was prepared for the next call; of this plan, empty at first.
   /// `goal`: an error that is to hold, world space, with as few triangles as possible; 0 = as small as it gets with
   /// those of the prefix.
   Result<Model> model_with_feedback(std::size_t count, Effort effort, double goal, FitTargets& targets,

@@ -63,8 +63,8 @@ struct VertexConstraints {
 /// of untouched_triangles() and validate()).
 Result<std::vector<VertexConstraints>> vertex_constraints(const Model& model, const SimplifyConstraints& constraints);
 
-/// The triangles of each mesh that `constraints.only` doesn't name, non-zero = must not change; empty when it names none.
-/// Errors: bad_argument (a number past the last triangle, a range that falls).
+/// The triangles of each mesh that `constraints.only` doesn't name, non-zero = must not change; empty when it names
+/// none. Errors: bad_argument (a number past the last triangle, a range that falls).
 Result<std::vector<std::vector<std::uint8_t>>> untouched_triangles(const Model& model,
                                                                    const SimplifyConstraints& constraints);
 

@@ -117,8 +117,9 @@ Result<MeasuredLevel> find_error_cut(LevelMaker& maker, Starts& starts, double l
 
 namespace {
 
-// Where no finer level tells anything, a level half way on the scale of logarithms does: if it is all but exact, too, as
-// much as the least error that tells. Before anything is known, errors below a two-hundredth of the diagonal are no ruin.
+// Where no finer level tells anything, a level half way on the scale of logarithms does: if it is all but exact, too,
+// as much as the least error that tells. Before anything is known, errors below a two-hundredth of the diagonal are no
+// ruin.
 Result<std::vector<CurvePoint>> curve_before(const LevelMaker& maker, const MeasuredLevel& cut,
                                              std::vector<CurvePoint> finer, const Task& task) {
   constexpr double kSmall = 0.005;

@@ -18,8 +18,8 @@ struct ThinShare {
 /// its principal axes. World space. O(what is drawn).
 ThinShare thin_share(const Model& model, const Task& task = {});
 
-/// Whether a level of so many triangles needs parts that vanish while others grow (SimplifyConstraints::keep_area): most of the
-/// area is in thin parts, of which there are many, and fewer than 16 triangles a part would be left.
+/// Whether a level of so many triangles needs parts that vanish while others grow (SimplifyConstraints::keep_area):
+/// most of the area is in thin parts, of which there are many, and fewer than 16 triangles a part would be left.
 bool needs_keep_area(const ThinShare& share, std::size_t smallest_triangles);
 
 }  // namespace lodestone::chain

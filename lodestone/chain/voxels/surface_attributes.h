@@ -26,12 +26,12 @@ struct SurfaceAttributeOptions {
 /// What surfaces take from one model.
 class AttributeSource {
  public:
-  /// The model's textures must be decoded (io::decode_base_colors()); it is copied. Errors: bad_argument (a texture size
-  /// without an encoder), those of bake::BakeSource::create().
+  /// The model's textures must be decoded (io::decode_base_colors()); it is copied. Errors: bad_argument (a texture
+  /// size without an encoder), those of bake::BakeSource::create().
   static Result<AttributeSource> create(const Model& model, const SurfaceAttributeOptions& options, Task task = {});
 
-  /// Gives normals and colours to the vertices of the surface's one mesh, or an atlas with textures, whose names tell the
-  /// level. Errors: those of bake::make_atlas(), bake_textures() and transfer_attributes(), and of the encoder.
+  /// Gives normals and colours to the vertices of the surface's one mesh, or an atlas with textures, whose names tell
+  /// the level. Errors: those of bake::make_atlas(), bake_textures() and transfer_attributes(), and of the encoder.
   Result<void> add_to(Model& surface, std::size_t level, Task task = {}) const;
 
  private:

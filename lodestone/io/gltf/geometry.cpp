@@ -1,3 +1,14 @@
+// A mesh's groups as glTF primitives: which streams become which attributes, in which types, plain, meshopt or Draco.
+//
+// meaning_of() finds the attribute of a stream (choose_type(): types that glTF does not know become floats where these
+// hold the values), custom_name() and make_unique() give names of one's own their underscore and keep them apart,
+// new_names() keeps what the document has renamed already. pack_positions() keeps quantized positions in integers where
+// all values still are such; pack_column() puts one attribute into the binary chunk. With Draco, attributes and indices
+// of a group become one stream (draco_kind(), tight()), and accessors tell counts and types only; where Draco cannot
+// hold a stream the group stays plain.
+//
+// The order of groups, streams and vertices is the mesh's, so bytes depend on the mesh and the options alone.
+// O(wedges).
 #include "lodestone/io/gltf/geometry_detail.h"
 
 #include <fmt/format.h>

@@ -10,7 +10,8 @@
 namespace lodestone::io {
 
 /// For a mesh read from glTF (`named`: the document's mesh; stream names are attribute names, those that glTF does not
-/// allow become legal_names()) or from another format (null; names made from meanings). What glTF cannot hold is left out and told in `warnings`, once a name.
+/// allow become legal_names()) or from another format (null; names made from meanings). What glTF cannot hold is left
+/// out and told in `warnings`, once a name.
 std::vector<AttributePlan> plan_attributes(const Mesh& mesh, const Json* named, bool flip_v,
                                            std::vector<std::string>& warnings);
 

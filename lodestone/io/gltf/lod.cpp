@@ -1,3 +1,12 @@
+// How levels hang in the nodes of a glTF scene: MSFT_lod, with MSFT_screencoverage.
+//
+// choose_holder() decides which node carries a mesh's levels: the node itself, or, where it has children, is animated,
+// is a joint or has a transform that the format forbids (role_of(), has_odd_transform()), a new leaf that takes over
+// mesh, skin and weights. level_node() makes the node of a level, with the holder's transform; it stands outside of the
+// scene, named by the holder's extension alone. Weight animations follow the mesh and are repeated for each level that
+// still morphs (move_weight_channels(), detach_weight_channels()).
+//
+// Nodes are only added, never renumbered, so every index in the document still means the same.
 #include "lodestone/io/gltf/lod_detail.h"
 
 #include <fmt/format.h>

@@ -18,8 +18,9 @@ struct NodeLevels {
 
 /// Gives node `node`, which carries a mesh, its coarser levels. level_meshes[k] is the JSON mesh of level k + 1, kNone
 /// where nothing is left of it. A node that has children, is animated, is a joint, carries a camera or a light, or has
-/// an odd transform (or a matrix that is too large to pass for a good one) hands its mesh and skin to a new identity leaf; weight animations follow the mesh and are repeated
-/// for each level. `coverage`: MSFT_screencoverage, one value a level with level 0; empty = none.
+/// an odd transform (or a matrix that is too large to pass for a good one) hands its mesh and skin to a new identity
+/// leaf; weight animations follow the mesh and are repeated for each level. `coverage`: MSFT_screencoverage, one value
+/// a level with level 0; empty = none.
 NodeLevels add_node_levels(Json& json, std::size_t node, const std::vector<std::size_t>& level_meshes,
                            const std::vector<double>& coverage, std::vector<std::string>& warnings);
 

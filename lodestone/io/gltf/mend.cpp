@@ -29,7 +29,8 @@ class Mender {
  public:
   Mender(const Document::Data& data, MendedViews& views) : data_(data), views_(views) {}
 
-  // The accessor as it is by now: others that share its view may have been mended before. Nothing for accessors whose elements are no plain part of a view: sparse ones, zeros.
+  // The accessor as it is by now: others that share its view may have been mended before. Nothing for accessors whose
+  // elements are no plain part of a view: sparse ones, zeros.
   std::optional<Location> place_of(const Json& index) {
     const Json& accessors = array_member(data_.json, "accessors");
     const std::uint64_t a = as_uint(index).value_or(accessors.size());

@@ -1,3 +1,13 @@
+// What has to be put right before a glTF is written, so that no level repeats what its input had against glTF 2.0.
+//
+// repair_accessors(): smallest and largest values where the format asks for them (find_bounded()), and right ones where
+// values have been mended (repair_bounds(), with_mended()). repair_skin(): weights of a corner sum to one, over all its
+// sets, and name joints that exist. zero_non_finite(): numbers that are none become 0. repair_weights(): as many morph
+// weights as targets. list_quantization(): KHR_mesh_quantization where what is stored needs it. release_views(): views
+// that nothing names any more.
+//
+// What changes a value that somebody could see is told by the caller. Only the JSON and our own meshes change, never
+// the document that was read. O(values of the accessors concerned).
 #include "lodestone/io/gltf/repair_detail.h"
 
 #include <fmt/format.h>

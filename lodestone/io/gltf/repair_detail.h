@@ -11,8 +11,8 @@
 
 namespace lodestone::io {
 
-/// A vertex's influences over all its sets, made possible: no weight is negative or infinite, no joint that pulls is named twice or
-/// is not below `joint_count`. True if anything was wrong.
+/// A vertex's influences over all its sets, made possible: no weight is negative or infinite, no joint that pulls is
+/// named twice or is not below `joint_count`. True if anything was wrong.
 bool settle_influences(std::span<std::uint32_t> joints, std::span<double> weights, std::uint32_t joint_count);
 
 /// The joints of the smallest skin that mesh `mesh` is drawn with; kNone without any.

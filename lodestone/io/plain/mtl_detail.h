@@ -16,9 +16,9 @@ namespace lodestone::io {
 
 class MtlImages;
 
-/// Appends the materials of an MTL text that lies in the folder `from` of the images' root: Kd, d or Tr, map_Kd, and of the PBR extension Pr,
-/// Pm and norm. All other lines, and of these the options of maps, are kept verbatim in Material::mtl_lines, textures
-/// with their images, up to 256 of a material; comments go. A black Kd beside a map_Kd
+/// Appends the materials of an MTL text that lies in the folder `from` of the images' root: Kd, d or Tr, map_Kd, and of
+/// the PBR extension Pr, Pm and norm. All other lines, and of these the options of maps, are kept verbatim in
+/// Material::mtl_lines, textures with their images, up to 256 of a material; comments go. A black Kd beside a map_Kd
 /// counts as white: exporters write it, and it would make the texture black. Without Pr the roughness is that of the
 /// highlight, see roughness_of_highlight(). A map_d that is the map_Kd makes Material::blend
 /// where the image is transparent anywhere.

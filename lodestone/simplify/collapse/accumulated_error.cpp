@@ -1,8 +1,9 @@
-// Accumulated errors: how far the surface has come from the original: each vertex carries an estimate, which every collapse adds to.
+// Accumulated errors: how far the surface has come from the original: each vertex carries an estimate, which every
+// collapse adds to.
 //
 // A collapse moves the surface by how far the new vertex lies from the old triangles, and the old vertices from the new
-// triangles. To each distance comes the accumulated error that was there before, interpolated. Costs weigh by area, so they are
-// blind to thin tips, and memoryless, so they forget what was lost before; the accumulated error sees both.
+// triangles. To each distance comes the accumulated error that was there before, interpolated. Costs weigh by area, so
+// they are blind to thin tips, and memoryless, so they forget what was lost before; the accumulated error sees both.
 #include <algorithm>
 #include <cmath>
 

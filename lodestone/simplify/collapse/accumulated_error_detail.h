@@ -29,8 +29,8 @@ class FanDistance {
   }
   /// Call once all triangles are added.
   void pad();
-  /// Distance from q (relative to the apex) to the nearest triangle that it is above or below, and the accumulated error there,
-  /// interpolated. False = there is none.
+  /// Distance from q (relative to the apex) to the nearest triangle that it is above or below, and the accumulated
+  /// error there, interpolated. False = there is none.
   bool error_above(Vec3f q, float apex_error, float& accumulated) const;
   /// The same to the nearest edge. At least one triangle.
   float error_at_edges(Vec3f q, float apex_error) const;

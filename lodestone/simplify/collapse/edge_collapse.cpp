@@ -1,8 +1,8 @@
 // Collapses edges, cheap ones first, until so many triangles are left or the next would err too much.
 //
-// Costs are those of Lindstrom & Turk 1998: memoryless, so quadrics (Garland & Heckbert 1997) are made from the triangles
-// as they are now, and a new vertex lies where the volume stays as it is. Legal is a collapse that keeps the surface's
-// topology (the link condition, Dey et al. 1999) and turns no triangle over.
+// Costs are those of Lindstrom & Turk 1998: memoryless, so quadrics (Garland & Heckbert 1997) are made from the
+// triangles as they are now, and a new vertex lies where the volume stays as it is. Legal is a collapse that keeps the
+// surface's topology (the link condition, Dey et al. 1999) and turns no triangle over.
 //
 // There is no queue that follows every change. It goes in passes: stars and quadrics of all vertices, the cost of every
 // edge that may go, the cheapest share of them in order of cost; each is collapsed if nothing near it has changed in

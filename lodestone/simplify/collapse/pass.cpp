@@ -24,9 +24,9 @@ namespace {
 // Small enough for a range to stay in a core's second cache, large enough for few edges to cross.
 constexpr std::size_t kRange = 8192;
 
-// The accumulated error, squared, costs as if it were over this many mean triangles. Over ten meshes at 50, 10 and 1 %, mean over
-// Lindstrom-Turk's and maximum over the best peer's: 0.25 1.035 1.48, 0.986 1.08, 0.970 1.14; 0.5 1.040 1.18, 0.995
-// 0.97, 0.961 0.92; 1 1.054 1.14, 1.010 0.95, 0.993 0.88.
+// The accumulated error, squared, costs as if it were over this many mean triangles. Over ten meshes at 50, 10 and 1 %,
+// mean over Lindstrom-Turk's and maximum over the best peer's: 0.25 1.035 1.48, 0.986 1.08, 0.970 1.14; 0.5 1.040 1.18,
+// 0.995 0.97, 0.961 0.92; 1 1.054 1.14, 1.010 0.95, 0.993 0.88.
 constexpr float kErrorWeight = 0.5F;
 
 // Marks the vertices whose rings lie in their range; ranges begin at multiples of kRange less `shift`.

@@ -55,8 +55,8 @@ struct Known {
 };
 
 /// Finds all partners. With what is known of a level that has triangles in common with this one, only those partners
-/// are looked for that the others could change; the correspondences are the same, and what probe_worst_errors() found on triangles that
-/// are there still is kept. O((points + triangles) log triangles).
+/// are looked for that the others could change; the correspondences are the same, and what probe_worst_errors() found
+/// on triangles that are there still is kept. O((points + triangles) log triangles).
 Correspondences find_correspondences(const FitTarget& target, const spatial::Surface& level, const Task& task,
                                      const Known* known = nullptr);
 

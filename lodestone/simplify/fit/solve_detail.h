@@ -15,9 +15,10 @@ struct CornersAt {
 };
 CornersAt corners_at(const spatial::Surface& level);
 
-/// Moves of the vertices, one each, zero where `no_move`. Gauss and Newton: each correspondence's partner stays, and counts along the
-/// correspondence alone, so that the level may slide; damped by `damping` times the correspondences' own weight at each vertex. The system of
-/// 3 x 3 blocks is solved by conjugate gradients, preconditioned by its diagonal blocks. O(correspondences + steps * triangles).
+/// Moves of the vertices, one each, zero where `no_move`. Gauss and Newton: each correspondence's partner stays, and
+/// counts along the correspondence alone, so that the level may slide; damped by `damping` times the correspondences'
+/// own weight at each vertex. The system of 3 x 3 blocks is solved by conjugate gradients, preconditioned by its
+/// diagonal blocks. O(correspondences + steps * triangles).
 std::vector<Vec3d> solve_displacements(const spatial::Surface& level, const Correspondences& correspondences,
                                        const CornersAt& around, std::span<const std::uint8_t> no_move, double damping,
                                        const Task& task);

@@ -10,8 +10,8 @@
 // the attributes of the corners and carries over what differs on the original (carry_attributes()).
 //
 // No triangle is changed twice, so everything is judged by the level as it was. Vertices on seams, between materials or
-// where the surface is not manifold are not pulled, edges of three triangles and more not split. Old vertices keep their
-// numbers, new ones follow. O(n log n).
+// where the surface is not manifold are not pulled, edges of three triangles and more not split. Old vertices keep
+// their numbers, new ones follow. O(n log n).
 #include "lodestone/simplify/fit/split_worst.h"
 
 #include <algorithm>

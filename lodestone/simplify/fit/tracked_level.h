@@ -1,4 +1,5 @@
-// TrackedLevel: a level that knows its distance from its original; its vertices moved to where it is nearest to its original, and edges turned over.
+// TrackedLevel: a level that knows its distance from its original; its vertices moved to where it is nearest to its
+// original, and edges turned over.
 #pragma once
 
 #include <cstdint>
