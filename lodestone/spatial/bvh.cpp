@@ -1,15 +1,17 @@
-// A tree of boxes over triangles, for closest points and for boxes that overlap.
+// A tree of boxes over the triangles of a surface, for closest points and for boxes that overlap.
 //
-// The surface's triangles lie along a Hilbert curve already, so the tree is its order cut into fours, level by level
-// (level_sizes(), fill_level()): no sorting, no pointers, children of a node are four boxes side by side that one
-// instruction compares. Long thin triangles, whose boxes are mostly empty, have several (thin_pieces_detail.h).
+// The constructor needs no sorting: the surface's triangles lie along a Hilbert curve [skilling-2004], so the tree is
+// that order cut into fours, level by level (level_sizes(), fill_level()). There are no pointers, and the boxes of a
+// node's four children lie side by side, so that they are compared at once. Long thin triangles, whose boxes are mostly
+// empty, get several boxes each ([ernst-greiner-2007], thin_pieces_detail.h).
 //
-// search() goes down from the root, nearest child first, with a stack of what is left; a child is left out when its box
-// is farther than the best so far. closest(), closest_facing() and all_within() differ in what they take and when they
-// stop. triangles_in() lists what reaches into a box.
+// search() goes down from the root, nearest child first, with a stack of what is left. A child is left out when its box
+// is farther than the best so far. closest(), closest_facing() and all_within() differ in which triangles they take and
+// in how far they look. triangles_in() lists the triangles whose boxes reach into a box.
 //
 // Boxes are floats, rounded outward by kMargin so that rounding never hides a triangle; triangles are tested in double.
-// So distances are exact in double precision, whatever the hint. Built in O(n), the same for any number of threads.
+// Distances are therefore exact in double precision, whatever the hint. Built in O(n), or O(n log n) with thin pieces;
+// the same for any number of threads. A query near the surface visits O(log n) nodes as a rule.
 #include "lodestone/spatial/bvh.h"
 
 #include <algorithm>
@@ -49,11 +51,11 @@ struct Visit {
   std::uint32_t level, index;
 };
 
-// Rounding to float and subtracting in float can move a box's side by a few units of the largest coordinate's last
-// place.
+// Rounding to float and subtracting in float can move a side of a box by a few units in the last place of its largest
+// coordinate, which is 1 here.
 constexpr Vec3f kMargin{0x1p-21F, 0x1p-21F, 0x1p-21F};
 
-// Of children that are none: far away, so that no query goes there; infinities would make NaN.
+// The box of a child that does not exist: far away, so that no query goes there. Infinities would make NaN.
 constexpr Vec3f kNowhere{1e19F, 1e19F, 1e19F};
 
 // Nodes of each level, from that above the leaves to the root.

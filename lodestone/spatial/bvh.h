@@ -20,15 +20,14 @@ struct Nearest {
 /// A packed tree: four children a node, the surface's Hilbert order cut into fours level by level, so nothing needs a
 /// pointer. Boxes are floats rounded outward, triangles are tested in double: the answer is exact in double precision.
 /// Build O(n), memory about 32 bytes a triangle. Where many triangles are long and thin, each of these has several
-/// boxes (thin_pieces_detail.h): O(n log n), and up to five times the memory and 36 MB. The surface must outlive the
-/// tree.
+/// boxes (thin_pieces_detail.h): O(n log n), and up to five times the memory and 36 MB. The surface must outlive it.
 class Bvh {
  public:
   explicit Bvh(const Surface& surface, const Task& task = {});
 
   /// The closest point to p. `hint` is a triangle that is probably near (any, or kNone): a good one makes it several
-  /// times faster and never changes the distance. Of equally near triangles the lowest in surface order that the search
-  /// meets.
+  /// times faster and never changes the distance. Of equally near triangles that the search meets, the one with the
+  /// lowest number.
   Nearest closest(Vec3d p, std::uint32_t hint = kNone) const;
 
   /// As closest(), of the triangles alone whose normal is within 90 degrees of `normal` and that are no farther
@@ -54,8 +53,8 @@ class Bvh {
   // box_of(child) for each child of this level's nodes; the nodes of the level below are filled.
   template <class BoxOf>
   void fill_level(std::size_t level, std::size_t children, const Task& task, BoxOf box_of);
-  // Visits triangles, near ones first, and calls take(triangle) for each whose box is within limit_sq, which it may
-  // lower.
+  // Visits triangles, near ones first, and calls take(triangle) for each whose box is within limit_sq. `take` may lower
+  // the limit.
   template <class Take>
   void search(Vec3d p, const double& limit_sq, Take&& take) const;
 

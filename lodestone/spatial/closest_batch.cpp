@@ -1,15 +1,18 @@
-// Closest points for thousands of points at once, several times faster than one by one.
+// Closest points for thousands of points at once, looked up in groups of eight.
 //
-// 1. sort(): points along a Hilbert curve through their box, so that eight in a row lie near each other.
-// 2. find_group(): the triangles that could be nearest to any of the eight are looked up once, by a box around the
-//    group that is as large as the group before had to look, and a little more (kFarther).
-// 3. test_near(): all of them against four points at a time in single precision, as an interval: `lowest_` and
-//    `highest_`, wider for slivers, whose planes single precision does not know (kSliver).
-// 4. The few triangles whose interval reaches below the best upper bound are tested again in double.
-// Groups that are spread wider than the triangles around them, or meet too many, ask the tree point by point: find().
+// find():
+// 1. sort() puts the points along a Hilbert curve [skilling-2004] through their box, so that eight in a row lie near
+//    each other.
+// 2. find_group() looks up once which triangles could be nearest to any of the eight: those in a box around the group,
+//    enlarged by somewhat more (kFarther) than the largest distance in the group before.
+// 3. test_near() tests these triangles against four points at a time in single precision. Each distance becomes an
+//    interval; that of a sliver, whose plane single precision does not know (kSliver), begins at 0.
+// 4. Back in find_group(), the few triangles whose interval reaches below the best upper bound are tested in double.
+// Groups that meet too many triangles, and those that single precision can't hold, ask the tree point by point.
 //
-// Single precision decides only what is left out, with kRounding as its bound, so answers are those of Bvh::closest().
-// Which triangle is named among equally near ones does not depend on threads, as groups are cut by the caller's chunks.
+// Single precision decides only what is left out, with kRounding as its bound: distances are those of Bvh::closest().
+// Groups are cut by the caller's chunks, so which of equally near triangles is named does not depend on threads either.
+// O(log n) a point as a rule, of which a group shares the most.
 #include "lodestone/spatial/closest_batch.h"
 
 #include <algorithm>
@@ -27,8 +30,8 @@ namespace {
 // How much farther to look than the group before had to.
 constexpr double kFarther = 1.6;
 
-// Of the largest coordinate of a triangle or point, as seen from the group's middle: what single precision may be off
-// by.
+// By how much single precision may be off: a share of the largest coordinate of a triangle or point, as seen from the
+// group's middle.
 constexpr float kRounding = 4e-6F;
 
 // Where twice the area is less than this share of the longest side squared, single precision does not know the plane.
@@ -143,7 +146,7 @@ bool ClosestBatch::find_group(std::span<const Vec3d> points, Group group, std::s
     const Vec3f d = to_float(points[group[i]] - middle);
     for (std::size_t k = 0; k < 3; ++k) coordinates[k][i] = d[k];
   }
-  // Neighbours are about as far as those before; once more where they are farther.
+  // Groups are about as far away as the one before; those that are farther are looked up once more.
   while (true) {
     const double within = within_, size = within + static_cast<double>(reach);
     if (!(size > 1e-12 && size < 1e12)) return false;  // squares would leave the range of single precision
@@ -171,8 +174,8 @@ bool ClosestBatch::find_group(std::span<const Vec3d> points, Group group, std::s
   return true;
 }
 
-// Distances of the group's points to the triangles of near_, as intervals: to lowest_ and highest_. Returns the largest
-// of highest_.
+// Writes the distances of the group's points to the triangles of near_, as intervals, to lowest_ and highest_. Returns
+// the largest of highest_.
 float ClosestBatch::test_near(const float (&coordinates)[3][kGroup], Vec3d middle, float reach) {
   Vec4 p[kGroup / 4];
   Float4 highest[kGroup / 4];

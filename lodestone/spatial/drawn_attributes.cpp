@@ -1,13 +1,15 @@
-// What a model's surface shows at a point: normals, texture coordinates and colours, as a viewer would draw them.
+// What a model's surface shows at a point, as a viewer would draw it: normals, texture coordinates and colours.
 //
-// DrawnAttributes() notes for each mesh which streams there are, and for each instance how its transform turns normals;
-// note_sets() lists the UV sets that anything drawn has. drawn_triangle() finds the instance, mesh, material group and
-// wedges of a triangle of the flattened surface, and the reading functions interpolate within it: stream_normal() and
-// normal() (the face's where there is none), uv() with the origin at the image's top, color() and light(): base colour
-// times texture times vertex colour, linear.
+// 1. The constructor notes which streams each mesh has (usable()), and how each instance's transform turns normals.
+//    note_sets() lists the UV sets that anything drawn has.
+// 2. drawn_triangle() finds the instance, mesh, group and wedges of a triangle of the flattened surface.
+// 3. The reading functions interpolate within it (interpolated()): stream_normal(), and normal(), which falls back on
+//    the face's; uv(), with the origin at the image's top; color(); and light(), which is base colour times texture
+//    times vertex colour, linear.
+// 4. uv_diagonal() measures the box of a UV set.
 //
-// A value is nothing where the primitive lacks the stream or a corner's number is not finite. Nothing is changed, so
-// any number of threads may read. O(log instances) a point.
+// A value is nothing where the primitive does not have the stream, or a corner's number is not finite. Nothing is
+// changed after construction, so any number of threads may read. O(log instances) a point.
 #include "lodestone/spatial/drawn_attributes.h"
 
 #include <algorithm>

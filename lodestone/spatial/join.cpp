@@ -1,7 +1,17 @@
-// Sews borders that were meant to meet. Border vertices that are each other's nearest make pairs; a pair is taken, the
-// nearest first, if edges stay manifold with it. Pairs that turn a triangle over or share no sewn edge with another are
-// dropped until there is none, what is left is renamed, and the search begins anew until it finds no pair. Then the
-// vertices move together.
+// Sews borders that were meant to meet: border vertices of different parts get the same position, so that exact welding
+// makes one vertex of them (docs/thin-parts.md, "How parts are joined").
+//
+// join_parts() runs rounds on a copy of the mesh (Sewn) until a round finds no pair; positions change at the very end.
+// Round::run():
+// 1. near_pairs(): border vertices that are each other's nearest and have no part in common, the nearest pairs first.
+// 2. A pair is taken if no vertex would end farther from where it began than the tolerance (stays_near()), and if edges
+//    stay manifold with it (keeps_edges()).
+// 3. Pairs are dropped again, until none is bad, if they share no sewn edge with another (is_sewn()) or turn a triangle
+//    over (turns()). Dropping one can make others bad.
+// 4. What is left is joined under one name (Sewn::join(), rename()). Corners of several parts close in later rounds.
+//
+// Locked vertices do not move. No vertex is joined to another of its own part. Pairs are sorted by distance, equal ones
+// by number: the same for any number of threads. O(n log n) a round, kMostRounds rounds at most.
 #include "lodestone/spatial/join.h"
 
 #include <algorithm>
@@ -76,7 +86,7 @@ struct Sewn {
   }
 };
 
-// Both ends' neighbours along borders, by vertex.
+// For each vertex, its neighbours along borders.
 struct Borders {
   std::vector<std::uint32_t> first, neighbours;
 
@@ -125,7 +135,7 @@ class Round {
       partner_[pair.a] = pair.b;
       partner_[pair.b] = pair.a;
     }
-    // What is dropped can leave others without a sewn edge, or turn what was right only together with it.
+    // Dropping a pair can leave others without a sewn edge, or turn triangles that were right only together with it.
     bool dropped = true;
     while (dropped && !task_.cancelled()) {
       dropped = drop([&](const Pair& pair) { return !is_sewn(pair); });
@@ -183,7 +193,7 @@ class Round {
     return pairs;
   }
 
-  // Nothing creeps: what moved before must not end farther away than the tolerance.
+  // Whether all vertices that would move end within the tolerance of where they began, in earlier rounds, too.
   bool stays_near(const Pair& pair, double tolerance) const {
     const Vec3d place = to_double(mesh_.positions[stayer(pair)]);
     return sewn_.all_of(mover(pair), [&](std::uint32_t v) {
@@ -191,7 +201,7 @@ class Round {
     });
   }
 
-  // The triangles around a vertex: the others' corners, in their order, under the names that they have so far.
+  // For each triangle around a vertex, its other two corners in the triangle's order, under the names they have so far.
   void gather(std::uint32_t v, std::vector<std::array<std::uint32_t, 2>>& out) const {
     out.clear();
     for (const std::uint32_t t : stars_.of(v)) {
@@ -227,7 +237,7 @@ class Round {
     return true;
   }
 
-  // True if a border edge of each falls together with one of the other: at a vertex that is joined already, or now.
+  // True if a border edge at either vertex ends at the same vertex, or at the two vertices of another pair.
   bool is_sewn(const Pair& pair) const {
     const auto here = borders_.of(pair.a), there = borders_.of(pair.b);
     const auto is_there = [&](std::uint32_t v) { return std::find(there.begin(), there.end(), v) != there.end(); };

@@ -1,16 +1,17 @@
-// Nearest points by a balanced tree whose shape depends on the number of points alone.
+// Nearest points: a balanced tree whose shape depends on the number of points alone.
 //
-// KdTree() scales the points by a power of two (unit_of()), so that squares fit floats, and halves them level by level
-// along the longest side of each node's box (Builder::split(), in parallel); leaves hold at most sixteen. As every half
-// has the same size, nodes need no pointers, and no arrangement of points makes a leaf large or the tree deep.
+// 1. The constructor scales points by a power of two (unit_of()), so that squares fit floats. It halves them level by
+//    level along the longest side of each node's box (Builder::split(), the nodes of a level in parallel). Leaves hold
+//    at most sixteen points. All nodes of a level have the same number of points, or one more, so nodes need no
+//    pointers, and no arrangement of points makes a leaf large or the tree deep.
+// 2. search() goes down from the root with a sorted list of the best so far; scan_leaf() tests a leaf's points. A node
+//    is left out when its box is farther than the last of the list. box_distance_sq() adds in the same order as the
+//    distance of a point, so rounding never makes a box look farther than a point in it.
+// 3. around() searches from a point of the tree, with a bound from the query before; nearest() from any place.
+//    point_spacing() asks nearest() for a sample of the points.
 //
-// search() goes down from the root with a sorted list of the best so far; a node is left out when its box is farther
-// than the last of them. box_distance_sq() adds in the same order as a point's distance, so rounding never makes a box
-// look farther than a point in it. around() and nearest() start it from a point of the tree or from anywhere;
-// point_spacing() uses both.
-//
-// Equal coordinates are told apart by the points' numbers: the same answers for any number of threads. Built in O(n log
-// n).
+// Points with equal coordinates are told apart by number: the same answers for any number of threads. Built in
+// O(n log n), a query about O(k + log n) for k points.
 #include "lodestone/spatial/kd_tree.h"
 
 #include <algorithm>
@@ -27,7 +28,7 @@ struct Item {
   std::uint32_t point;
 };
 
-// A power of two near the longest side of the box, or of what lies in it far from the origin.
+// The power of two next above the largest coordinate.
 double unit_of(const Box3f& box) {
   double largest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -95,8 +96,8 @@ KdTree::KdTree(std::span<const Vec3f> points, const Task& task) {
   }
 }
 
-// In the same order of operations as a point's distance, so that rounding never makes it larger than that of a point in
-// the box.
+// Computed in the same order of operations as the distance to a point, so that rounding never makes it larger than that
+// to a point in the box.
 float KdTree::box_distance_sq(std::size_t node, std::array<float, 3> at) const {
   const Box3f& box = boxes_[node];
   const float x = std::max({box.min.x - at[0], 0.0F, at[0] - box.max.x});
@@ -162,7 +163,7 @@ std::size_t KdTree::around(std::size_t slot, std::span<Found> found, Hint& hint)
   }
   std::size_t count = search(at, found, below_sq);
   hint = {count == found.size(), slot, count > 0 ? found[count - 1].distance_sq : 0};
-  // Itself goes; among many duplicates it may not have been taken.
+  // The point itself is left out; among many duplicates it may not have been found.
   std::size_t self = 0;
   while (self < count && found[self].slot != slot) ++self;
   if (self < count) {

@@ -1,12 +1,15 @@
-// The nearest part of a mesh whose parts vanish one after another.
+// The nearest part of a mesh whose parts vanish one after another: a tree over parts, and a tree over the triangles of
+// each part.
 //
-// order_triangles() sorts triangles by part and, within it, along a Hilbert curve; build_part_trees() puts boxes over
-// fours of them, level by level, for each part; build_top_tree() does the same over the parts' own boxes. A query goes
-// down the top tree first, so a part that it must not find costs one test however large it is (part_tree.h has the
-// search). test_triangles() measures at the leaves, in double. remove() empties a part's box and renews those above it.
+// 1. order_triangles() sorts triangles by part and, within a part, along a Hilbert curve [skilling-2004].
+// 2. build_part_trees() puts boxes over fours of them, level by level, for each part.
+// 3. build_top_tree() does the same over the boxes of the parts.
+// 4. nearest() (part_tree.h) goes down the top tree first, so a part that a query must not find costs one test however
+//    large it is. test_triangles() measures at the leaves, in double.
+// 5. remove() empties the box of a part and renews the boxes above it.
 //
-// Equally near parts are told apart by their numbers: the same for any number of threads. Built in O(n log n), a
-// removal in O(log n).
+// Of equally near parts the lowest number is taken: the same answers for any number of threads. Built in O(n log n), a
+// removal in O(log parts).
 #include "lodestone/spatial/part_tree.h"
 
 #include <algorithm>

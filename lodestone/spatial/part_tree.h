@@ -24,8 +24,7 @@ struct NearestPart {
 /// Hilbert curve, no pointers. Build O(n log n), memory about 80 bytes a triangle.
 class PartTree {
  public:
-  /// `triangles` name positions; the part of each is that of its first vertex. The lists of vertices must outlive the
-  /// tree.
+  /// `triangles` name positions; the part of each is that of its first vertex. `positions` must outlive the tree.
   PartTree(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
            const std::vector<std::uint32_t>& part_of_vertex, std::size_t parts, const Task& task = {});
 

@@ -35,8 +35,8 @@ struct Surface {
 Result<Surface> flatten(const Model& model, Task task = {});
 Result<Surface> flatten(const Model& model, Input input, Task task = {});
 
-/// Triangles that name positions that are there, all finite and within kMostCoordinate. O(n). Errors: bad_argument,
-/// cancelled.
+/// Whether all triangles name positions that exist, and these are finite and within kMostCoordinate. O(n). Errors:
+/// bad_argument, cancelled.
 Result<void> validate(const Surface& surface, const Task& task = {});
 
 }  // namespace lodestone::spatial

@@ -19,8 +19,7 @@ struct Piece {
 
 /// All triangles of the surface as pieces, along a Hilbert curve, where many are so thin and slanted that it pays;
 /// otherwise nothing. At most 5 n + 1,000,000 pieces, 60 bytes each while the tree is built. O(n log n).
-/// Source: Ernst & Greiner, "Early split clipping for bounding volume hierarchies", 2007 (boxes of parts of a
-/// triangle).
+/// Source: [ernst-greiner-2007], boxes of parts of a triangle.
 std::vector<Piece> thin_pieces(const Surface& surface, const Task& task);
 
 }  // namespace lodestone::spatial::detail

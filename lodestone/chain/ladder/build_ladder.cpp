@@ -1,18 +1,19 @@
-// The main job: a model in, a ladder of levels out, each with its error measured against the original.
+// The main job: from a model to a ladder of levels, each with its error measured against the original.
 //
 // build_ladder():
-// 1. CollapsePlan::create() collapses each drawn mesh once and merges the collapses of all by error, so that every
-//    level is a prefix of one order; measure::Reference prepares the original, in world space.
-// 2. add_count_levels(): counts and ratios are looked up in that order. Each level is made and measured; one whose
-//    error is out of line with the curve of those before it (keep_in_line()) gives way to the coarsest that is in line,
-//    and the ladder ends there, unless `force` is set. add_error_levels(): for an error the coarsest prefix whose
-//    measured maximum is within it (find_error_cut()).
+// 1. CollapsePlan::create() collapses each drawn mesh once and merges the collapses of all meshes by error, so that
+//    every plain level is a prefix of one order. measure::Reference prepares the original, in world space.
+// 2. For counts and ratios (count_targets()), add_count_levels() looks up each prefix; add_count_level() makes and
+//    measures the level. Where its error is out of line with those of the finer levels (keep_in_line()), the coarsest
+//    level that is in line takes its place, and the ladder ends there, unless `force` is set.
+//    For errors, add_error_levels() takes for each the coarsest level that find_error_cut() finds within it.
 // 3. compare_pictures(), where pictures are asked for.
-// simplify_model() is the same for one level; screen_coverages() are the switch points that MSFT_lod wants.
+// simplify_model() does the same for one level. screen_coverages() gives the switch points that MSFT_lod wants.
 //
-// Errors never fall along a ladder (add_level()). What could not be reached is a Shortfall with its cause, never a
-// silent success. The record of collapses does not depend on the targets, so a level is the same whatever else was
-// asked for.
+// Errors never fall along a ladder (add_level()). A target that is not reached is told as a Shortfall with its cause.
+// The order of collapses does not depend on the targets: a prefix makes the same plain level whatever else is asked
+// for. The same bytes for any number of threads. Cost: one run of edge collapse, O(n log n), and for each level that is
+// tried a replay, O(n), and a measurement, which takes longer.
 #include "lodestone/chain/ladder/build_ladder.h"
 
 #include <fmt/format.h>
@@ -98,7 +99,7 @@ std::vector<CurvePoint> curve_of(const Ladder& ladder) {
   return out;
 }
 
-// What was asked, and what it would have come to.
+// A level that is out of line: what was asked for, and what was made for it.
 struct Jump {
   std::size_t wanted = 0;  // triangles
   CurvePoint made;
@@ -126,8 +127,8 @@ bool shrinks(const LadderResult& result, std::size_t triangles) {
   return triangles * 100 <= result.ladder.levels.back().triangles * 97;
 }
 
-// True if what the first level starts from is a level already: a surface made anew, or the original without its doubled
-// faces.
+// True if what the first level is collapsed from is coarser than the original already: a surface made anew, or the
+// original without its doubled faces.
 bool starts_coarser(const LadderResult& result, const LadderOptions& options, std::size_t triangles) {
   return result.ladder.levels.size() == 1 && (options.start || shrinks(result, triangles));
 }
@@ -167,7 +168,7 @@ Result<void> add_count_levels(LadderResult& result, LevelMaker& maker, const std
     const std::size_t prefix = plan.prefix_for(targets[i]), left = plan.triangles_after(prefix);
     const bool short_of = left > targets[i];
     const bool is_new = prefix > last || starts_coarser(result, options, left);
-    if (is_new && (!short_of || shrinks(result, left))) {  // one that hardly differs from the one before is none
+    if (is_new && (!short_of || shrinks(result, left))) {  // else it hardly differs from the level before
       const Result<bool> goes_on = add_count_level(result, maker, {i + 1, targets[i], prefix, last}, options, part);
       LODESTONE_TRY(goes_on);
       if (!*goes_on) break;
@@ -270,7 +271,7 @@ Result<void> detail::compare_pictures(LadderResult& result, const measure::Image
 
 namespace {
 
-// What collapsing and making ready to measure take of the whole, roughly: feedback takes far longer than both.
+// Rough shares of the time for collapsing and for preparing the reference: feedback takes far longer than both.
 struct Shares {
   double collapsing, preparing;
 };

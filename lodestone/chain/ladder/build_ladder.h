@@ -27,7 +27,7 @@ struct LadderOptions {
   std::vector<std::size_t> triangles;  ///< drawn triangles, one a coarser level, falling
   std::vector<double> errors;          ///< measured maximum allowed, model units, one a coarser level, rising:
                                        ///< the coarsest mesh found within it, by bisection over one run's log
-  SimplifyConstraints constraints;     ///< where the model matters more, what stays
+  SimplifyConstraints constraints;     ///< where the model matters more, what must not move
   Effort effort = Effort::fast;        ///< how much work each level is worth
   measure::DistanceOptions distance;   ///< samples and seed of the measurement
   /// With counts and ratios: levels are written however far their errors jump. Without, a ladder ends where an error is

@@ -1,14 +1,18 @@
-// One order of steps for a whole model, from which every level is a prefix (after [progressive-mesh]).
+// One order of steps for a whole model, from which every level is a prefix (after [progressive-mesh], section 2.2).
 //
-// 1. plan_mesh(): each drawn mesh is collapsed once, as far as the smallest level may need; its log holds the steps
-//    with their errors in world space. Where parts may vanish, simplify::prune_order() gives their steps, too.
-// 2. merge(): the steps of all meshes by error. Within a mesh errors never fall, so a stable sort keeps its order.
-// 3. count_triangles(): how many triangles are drawn after each prefix (a mesh counts once for each instance), so that
-//    prefix_for() finds a level by halving.
-// 4. model_after(): replays each mesh's share of a prefix, leaves out what has vanished, lets neighbours grow by the
-//    area that went, and finishes tangents and skin weights. end() says why no step follows the last.
+// 1. create() collects what the constraints say of each mesh. Where it is asked for, working_meshes() welds near
+//    vertices or joins near parts first.
+// 2. plan_mesh() collapses each drawn mesh once, as far as the smallest level may need. Its log holds the steps with
+//    their errors in world space. Where parts may vanish, simplify::prune_order() adds steps for them.
+// 3. merge() puts the steps of all meshes in order of error. Within a mesh errors never fall, so a stable sort leaves
+//    the mesh's own order as it is.
+// 4. count_triangles() adds up how many triangles are drawn after each prefix; a mesh counts once for each instance.
+//    prefix_for() then finds the prefix for a count by bisection.
+// 5. model_after() makes a level: mesh_after() replays each mesh's share of the prefix, leaves out the parts that have
+//    vanished, and lets others grow by their area; finish() does tangents and skin weights.
+// 6. end() says in plain words why no step follows the last.
 //
-// Sorting is stable and counting in order: the same steps for any number of threads. O(n log n), a level O(n).
+// The original is never changed. The same steps for any number of threads. O(n log n) for the plan, O(n) for a level.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -112,7 +116,7 @@ Result<void> CollapsePlan::plan_mesh(std::size_t m, std::size_t target, const Si
   return {};
 }
 
-// All meshes' steps by error in world space; within a mesh the order of its own, as its errors never fall.
+// All meshes' steps by error in world space; within a mesh its own order, as its errors never fall.
 void CollapsePlan::merge() {
   struct Entry {
     float error;
@@ -135,7 +139,7 @@ void CollapsePlan::merge() {
   for (const Entry& entry : entries) steps_.push_back(entry.step);
 }
 
-// What a part still had goes when it vanishes; collapses in it that come later count nothing.
+// A part that vanishes takes the triangles along that it still has; later collapses in it remove none.
 void CollapsePlan::count_triangles() {
   std::size_t drawn = 0;
   std::vector<std::vector<std::uint32_t>> left(logs_.size());  // triangles of each part
@@ -270,7 +274,7 @@ void CollapsePlan::finish(Mesh& mesh) const {
   if (max_skin_influences_ > 0) limit_influences(mesh, max_skin_influences_);
 }
 
-// Parts drawn when nothing vanishes, of meshes that have several: one stays of each.
+// Parts drawn when nothing vanishes, of meshes that have several: of a mesh of one part none could vanish.
 std::size_t CollapsePlan::drawn_parts() const {
   std::size_t parts = 0;
   for (std::size_t m = 0; m < logs_.size(); ++m) {
@@ -293,7 +297,7 @@ PlanEnd CollapsePlan::end() const {
   tell(locked_.by_request, "locked on request");
   std::string why = causes.empty() ? "no collapse is left that keeps the surface's topology and folds nothing"
                                    : fmt::format("vertices that cannot move: {}", fmt::join(causes, ", "));
-  // A part keeps a triangle or four: where they are many of what is left, that is the cause.
+  // A part never loses its last triangle, or four where it is closed: where these are many of all, they are the cause.
   constexpr std::size_t kMany = 16;
   if (prunes_) return {why};
   const std::size_t parts = drawn_parts();

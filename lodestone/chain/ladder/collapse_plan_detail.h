@@ -23,7 +23,7 @@
 
 namespace lodestone::chain::detail {
 
-/// What levels are improved to, one a mesh, made when it is needed.
+/// The originals that levels are fitted to and measured against, one a mesh, each prepared when it is first needed.
 struct FitTargets {
   std::vector<std::unique_ptr<simplify::FitTarget>> targets;
   std::vector<std::optional<measure::Reference>> references;  ///< of those that are improved to a goal
@@ -54,10 +54,10 @@ class CollapsePlan {
   Result<Model> model_after(std::size_t count, Task task) const;
 
   /// As model_after(), with every mesh that allows it improved by its own measured error (apply_feedback()): those that
-  /// are drawn without being stretched, and of which no part vanishes and no triangle must stay. `targets` keeps what
-  /// was prepared for the next call; of this plan, empty at first.
-  /// `goal`: an error that is to hold, world space, with as few triangles as possible; 0 = as small as it gets with
-  /// those of the prefix.
+  /// are drawn without being stretched, of which no part may vanish and no triangle is untouched. `targets` is empty at
+  /// first and belongs to this plan; what is prepared in it serves the next calls.
+  /// `goal`: an error not to exceed, world space, with as few triangles as possible; 0 = the smallest error with the
+  /// prefix's number of triangles.
   Result<Model> model_with_feedback(std::size_t count, Effort effort, double goal, FitTargets& targets,
                                     Task task) const;
 
@@ -80,7 +80,7 @@ class CollapsePlan {
    private:
     std::uint32_t bits_;
   };
-  // How far the steps of one mesh have come.
+  // How many steps of one mesh lie in a prefix: collapses, and parts that vanish.
   struct Progress {
     std::size_t collapses = 0, steps = 0;
   };

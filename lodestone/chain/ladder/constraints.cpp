@@ -1,6 +1,16 @@
-// What users tell of a model (spheres, a weight attribute, ranges of triangles, names) becomes one weight and one lock
-// a vertex, and one mark a triangle that must not change. Of several opinions the largest weight counts, and a lock
-// wins; a mesh that is drawn several times obeys all its instances.
+// From what users say of a model (spheres, a weight attribute, ranges of triangles) to what edge collapse is told of
+// each mesh: a weight and a no_move mark for each vertex, and a mark for each triangle that must not change.
+//
+// vertex_constraints() does this in three steps, after which weights that are 1 everywhere are dropped:
+// 1. untouched_triangles() marks all triangles outside of the ranges, numbered over the model's meshes in order.
+//    Vertices of marked triangles are no_move (vertices_of_triangles()).
+// 2. add_attribute() reads weights from a stream of one component. Of several wedges at a vertex the largest counts.
+// 3. add_spheres() places the vertices of every instance in world space. Within spheres the largest of their weights
+//    replaces the attribute's; one sphere of no_move is enough to fix a vertex. A mesh that is drawn several times
+//    obeys the spheres at all its instances.
+// empty_spheres() lists the spheres in which no drawn vertex lies, so that the caller can warn.
+//
+// Single-threaded, in the order of the input. O(drawn vertices * spheres + triangles).
 #include "lodestone/chain/ladder/constraints.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// What users tell edge collapse of a model: where it matters more, what stays, what counts as one, what may vanish.
+// What users tell edge collapse of a model: where it matters more, what must not move, what is joined, what may vanish.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace lodestone::chain {
 
-/// A ball in world space (default scene) in which vertices weigh `weight`, or stay where they are.
+/// A ball in world space (default scene) in which vertices weigh `weight`, or do not move.
 struct ConstraintSphere {
   Vec3d center;
   double radius = 0;  ///< model units
@@ -35,13 +35,13 @@ enum class Tangents {
 struct SimplifyConstraints {
   std::vector<ConstraintSphere> spheres;
   std::string weight_attribute;  ///< name of a stream of one component whose values are weights; empty = none
-  bool keep_border = false;      ///< open borders stay as they are
+  bool keep_border = false;      ///< vertices of open borders neither move nor vanish
   double weld_tolerance = 0;  ///< model units: vertices nearer than this are one in coarser levels; 0 = only equal ones
   double join_length = 0;     ///< model units: borders of different parts nearer than this are sewn together; 0 = none
   bool prune = false;         ///< parts vanish when that errs no more than the collapses of a level do
-  bool keep_area = false;     ///< and those that stay grow to the area that they stand for; implies prune
+  bool keep_area = false;     ///< and those that are left grow to the area that they stand for; implies prune
   /// The triangles that may change, counted from 0 over the model's meshes in order, each mesh once however often it is
-  /// drawn; all others stay to the bit. Empty = all may.
+  /// drawn; all others are left as they are to the bit. Empty = all may.
   std::vector<TriangleRange> only;
 
   simplify::AttributeWeights attribute_weights;
@@ -71,7 +71,7 @@ Result<std::vector<std::vector<std::uint8_t>>> untouched_triangles(const Model& 
 /// Non-zero for the vertices of marked triangles; empty when `marked` is.
 std::vector<std::uint8_t> vertices_of_triangles(const Mesh& mesh, const std::vector<std::uint8_t>& marked);
 
-/// Numbers of the spheres that hold no vertex that is drawn, ascending: a slip of the keyboard, as a rule.
+/// Numbers of the spheres in which no drawn vertex lies, ascending: a typing error, as a rule.
 std::vector<std::size_t> empty_spheres(const Model& model, const std::vector<ConstraintSphere>& spheres);
 
 }  // namespace lodestone::chain

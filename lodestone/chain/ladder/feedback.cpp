@@ -1,17 +1,21 @@
-// Levels improved by their own measured error, see docs/papers/measured-feedback.md.
+// Levels improved by their own measured error. Sources and figures: docs/papers/measured-feedback.md.
 //
-// A level from edge collapse alone is good where costs judged well. Measuring it tells where they did not, and that is
-// put right in one of two ways:
-// - weighted() (effort normal): the start is collapsed again, vertices near the worst triangles weighing more, twice.
-// - fitted() (effort best): vertices are moved and edges turned to where squared distances are least [hoppe-1993]; then
-//   redistribute_rounds() splits where it is worst and collapses where triangles are missed least; at last
-//   meet_volume().
-// With a goal for the error, fewest_within_goal() then takes a tenth of the triangles away at a time: within_goal()
-// holds vertices where collapses led beyond the goal and tries again, and holds_goal() certifies each step.
+// Edge collapse makes a good level where its costs judged well. Where they did not, the measured error shows it.
+// apply_feedback() improves the level in one of two ways:
+// - weighted() (effort normal): the start is collapsed again, vertices near the worst triangles weighing more
+//   (raise_weights()); two rounds. The idea that measurements choose what is collapsed: [lindstrom-turk-2000].
+// - fitted() (effort best): vertices are moved and edges turned to where squared distances are least [hoppe-1993]
+//   (fit_without_faults()). redistribute_rounds() then splits triangles where the level is worst and collapses others
+//   where that costs least. At last meet_volume() restores the volume.
+// With a goal for the error, fewest_within_goal() then removes triangles step by step, a tenth at first. In each step
+// within_goal() marks vertices no_collapse where the level came out beyond the goal, and tries again; holds_goal()
+// accepts a level only with a certified bound.
 //
-// The best level so far is always kept, so a round can't make it worse: the maximum falls, the mean stays within
-// limits, and no fault (triangles that cross or fold) is added. What may not move, collapse or be split is known by the
-// vertices' names, see NamedMesh. The same bytes for any number of threads. O(rounds * n log n).
+// Of all rounds the level with the smallest maximum is taken. The mean stays within a limit, and no step adds faults
+// (triangles that cross or fold) to those of the plain level; weighted() of effort normal admits as many as the
+// original has. A fit may still raise the maximum, so LevelMaker measures both levels and takes the better. Vertices
+// are known across levels by name (NamedMesh); lists for no_move and no_collapse hold names.
+// The same bytes for any number of threads. O(rounds * n log n).
 #include <algorithm>
 #include <optional>
 #include <tuple>
@@ -43,13 +47,13 @@ constexpr double kMeanSlack = 1.01;  // the mean may rise by a hundredth for a s
 constexpr float kBorder = 3;         // weight of borders, so that they pay little for what gains weight elsewhere
 constexpr int kWeightedRounds = 2;
 
-// Redistributing rounds: how many at most, and how many without a smaller maximum end them.
+// Redistributing rounds: at most so many, ended by so many in a row without a smaller maximum.
 constexpr int kRounds = 14;
 constexpr int kIdleRounds = 4;
-// Fewer triangles within a goal: so many at first, until a smaller step fails, too.
+// Fewer triangles within a goal: the share that the first step leaves, and the share at which steps end.
 constexpr double kShrink = 0.9, kLeastShrink = 0.98;
-constexpr int kRetries = 4;        // with vertices kept where collapses led beyond the goal,
-constexpr int kRoundsForGoal = 8;  // and of redistributing what is left
+constexpr int kRetries = 4;        // with no_collapse where collapses led beyond the goal,
+constexpr int kRoundsForGoal = 8;  // and of redistributing after that
 constexpr double kCertify = 0.99;  // of the goal, as bounds are a hundredth above what they bound
 constexpr std::uint64_t kCertifySamples = 1000, kCertifyQueries = 1'000'000;
 constexpr double kVolumeMax = 1.02, kVolumeMean = 1.005;  // how far errors may rise to meet the volume
@@ -93,7 +97,7 @@ void raise_weights(const Mesh& start, const TrackedLevel& level, std::vector<flo
   }
 }
 
-// The start collapsed again, vertices where the level is worst weighing more; the smallest maximum.
+// The start collapsed again, vertices where the level is worst weighing more; the round with the smallest maximum.
 Result<NamedLevel> weighted(const FeedbackSource& source, NamedLevel best, Effort effort, const Task& task) {
   EdgeCollapseOptions options = source.options;
   options.target_triangles = best.level.mesh().triangles.size();
@@ -112,7 +116,8 @@ Result<NamedLevel> weighted(const FeedbackSource& source, NamedLevel best, Effor
     if (made->mesh.triangles.empty() || task.cancelled()) break;
     current = TrackedLevel(source.target, std::move(made->mesh), task);
     if (!(current.max() < best.level.max()) || current.mean() > kMeanSlack * start_mean) continue;
-    // Collapses leave some of the faults that an original has: these may be others, but for what is to be fitted.
+    // Collapses leave some of the original's faults, not always the same: as many as it has are allowed, unless the
+    // level is to be fitted.
     const TrackedLevel::Faults faults = current.faults(task);
     if (!faults.no_more_than(most_faults) && effort == Effort::normal && !knows_original) {
       const spatial::Surface& original = source.target.surface();
@@ -131,7 +136,7 @@ bool has_borders(const Mesh& mesh, const Task& task) {
   return std::any_of(edges.edges.begin(), edges.edges.end(), [](const Edge& e) { return e.count != 2; });
 }
 
-// Adds marked vertices to a list, which stays sorted by name.
+// Adds marked vertices to a list of no_move or no_collapse, and sorts it by name.
 void hold(const NamedLevel& level, const std::vector<std::uint8_t>& marked, std::vector<HeldVertex>& list) {
   const Mesh& mesh = level.level.mesh();
   for (std::size_t v = 0; v < marked.size(); ++v) {
@@ -144,7 +149,7 @@ void hold(const NamedLevel& level, const std::vector<std::uint8_t>& marked, std:
   list.erase(end, list.end());
 }
 
-// Adds those vertices of a level where a coarser one is beyond a limit.
+// Adds the vertices of a level where a coarser one is farther from the original than a limit.
 void hold_beyond(const NamedLevel& level, const TrackedLevel& coarser, double limit, std::vector<HeldVertex>& list,
                  const Task& task) {
   const std::vector<double> worst = error_at_vertices(level.level.mesh(), coarser, task);
@@ -153,7 +158,7 @@ void hold_beyond(const NamedLevel& level, const TrackedLevel& coarser, double li
   hold(level, bad, list);
 }
 
-// Rounds of redistributing, the smallest maximum; the mean stays below `most_mean`, and no faults are added.
+// Rounds of redistributing; the one with the smallest maximum. The mean is at most `most_mean`; no faults are added.
 Result<NamedLevel> redistribute_rounds(const FeedbackSource& source, NamedLevel best, double most_mean,
                                        const TrackedLevel::Faults& most_faults, const Task& task) {
   const std::size_t triangles = best.level.mesh().triangles.size();
@@ -171,7 +176,7 @@ Result<NamedLevel> redistribute_rounds(const FeedbackSource& source, NamedLevel 
     ++idle;
     const TrackedLevel::Faults faults = made.faults(task);
     if (!faults.no_more_than(most_faults)) {
-      hold(*next, faults.vertices, options.no_move);  // and again from where it was
+      hold(*next, faults.vertices, options.no_move);  // and again from the level before
       continue;
     }
     current = std::move(*next);
@@ -182,7 +187,7 @@ Result<NamedLevel> redistribute_rounds(const FeedbackSource& source, NamedLevel 
   return best;
 }
 
-// Whether a level is certified to be within the goal; places where it is not are told to it.
+// Whether a level is certified to be within the goal. If not, it is told the worst place (probe_error()).
 Result<bool> holds_goal(const FeedbackSource& source, TrackedLevel& level, const Task& task) {
   measure::DistanceOptions options;
   options.samples = kCertifySamples;
@@ -197,9 +202,9 @@ Result<bool> holds_goal(const FeedbackSource& source, TrackedLevel& level, const
   return false;
 }
 
-// A level of at most so many triangles that is certified to be within the goal; nothing where none was found. Collapses
-// that lead beyond it are not tried again: `no_collapse` of the options grows. What is left then is split and collapsed
-// elsewhere.
+// A level of at most options.most_triangles that is certified to be within the goal; nothing where none was found.
+// Vertices where collapses led beyond the goal become no_collapse, and the start is collapsed again; if that is not
+// enough, what came out is redistributed.
 Result<std::optional<NamedLevel>> within_goal(const FeedbackSource& source, const NamedLevel& start,
                                               const TrackedLevel::Faults& most_faults, RedistributeOptions& options,
                                               const Task& task) {
@@ -236,7 +241,7 @@ Result<std::optional<NamedLevel>> within_goal(const FeedbackSource& source, cons
   return std::make_optional(std::move(*made));
 }
 
-// Fewer and fewer triangles within the goal; nothing where the level can't be brought there as it is.
+// Fewer and fewer triangles within the goal; nothing where not even the start's own number can be brought there.
 Result<std::optional<NamedLevel>> fewest_within_goal(const FeedbackSource& source, const NamedLevel& start, bool fits,
                                                      const Task& task) {
   const TrackedLevel::Faults most_faults = start.level.faults(task);
@@ -265,7 +270,7 @@ Result<std::optional<NamedLevel>> fewest_within_goal(const FeedbackSource& sourc
   return best;
 }
 
-// The volume is met again, if that costs next to nothing.
+// Restores the volume of the original, if errors hardly rise.
 void meet_volume(TrackedLevel& level, const std::vector<std::uint8_t>& no_move, const TrackedLevel::Faults& most,
                  const Task& task) {
   TrackedLevel met = level;
@@ -278,7 +283,7 @@ void meet_volume(TrackedLevel& level, const std::vector<std::uint8_t>& no_move, 
   if (is_near && met.faults(task).no_more_than(most)) level = std::move(met);
 }
 
-// Fits without adding faults: where some come up, the vertices there stay, and all is fitted again.
+// Fits without adding faults: where some come up, the vertices there become no_move, and all is fitted again.
 void fit_without_faults(TrackedLevel& level, simplify::FitOptions options, const TrackedLevel::Faults& most,
                         const Task& task) {
   for (int attempt = 0; attempt < kFitAttempts && !task.cancelled(); ++attempt) {
@@ -299,7 +304,7 @@ void fit_without_faults(TrackedLevel& level, simplify::FitOptions options, const
 Result<NamedLevel> fitted(const FeedbackSource& source, NamedLevel level, const Task& task) {
   const double plain_mean = level.level.mean();
   const TrackedLevel::Faults plain_faults = level.level.faults(task);
-  // Fitting holds borders and what is not manifold; where these are worst, only collapsing otherwise helps.
+  // Fitting moves no borders and no non-manifold vertices; where these are worst, only other collapses help.
   if (has_borders(level.level.mesh(), task)) {
     Result<NamedLevel> start = weighted(source, std::move(level), Effort::best, task);
     if (!start) return start;
@@ -337,7 +342,7 @@ Result<Mesh> apply_feedback(const FeedbackSource& source, NamedMesh plain, Effor
   if (task.cancelled()) return cancelled_error("shaping");
   LODESTONE_TRY(improved);
   if (!has_goal) return improved->level.mesh();
-  // What fitting spoils is not gone into: from the plain level then, and at last as without fitting.
+  // If the improved level does not reach the goal, the plain one may: fitted on the way, or at last without fitting.
   struct Way {
     const NamedLevel* start;
     bool fits;

@@ -1,5 +1,5 @@
-// LevelMaker: makes and measures levels of one collapse plan; finds the one that holds an error, or whose error is in
-// line with the levels before it.
+// LevelMaker: makes and measures levels of one collapse plan. Searches for the level within an error, and for the one
+// whose error is in line with the levels before it.
 #pragma once
 
 #include <cstddef>
@@ -51,7 +51,7 @@ class LevelMaker {
   FitTargets targets_;
 };
 
-/// Where searches for errors have come to: the next, larger error needs nothing finer.
+/// Where the search for the last error ended: the next error is larger, so it needs nothing finer.
 struct Starts {
   std::size_t plain = 0;          ///< the coarsest plain prefix within the last error
   std::size_t with_feedback = 0;  ///< the prefix of the last level
@@ -62,11 +62,11 @@ struct Starts {
 /// level was. Errors: cancelled.
 Result<MeasuredLevel> find_error_cut(LevelMaker& maker, Starts& starts, double limit, const Task& task);
 
-/// What becomes of a level whose error may jump.
+/// A level whose error may jump, or the one that takes its place.
 struct InLine {
   std::optional<MeasuredLevel>
       cut;             ///< the coarsest that is in line; none where nothing coarser than the finer level is
-  bool jumps = false;  ///< it is another than the one that was asked
+  bool jumps = false;  ///< the level that was asked for is out of line
 };
 
 /// `cut` itself where its error is in line with those of the finer levels (most_in_line()); else the coarsest between

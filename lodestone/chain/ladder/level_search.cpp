@@ -1,5 +1,18 @@
-// Searches along one collapse plan. Method: bisection on the logarithm of the triangle count between a prefix that is
-// good enough and one that is not, each probe replayed and measured.
+// Two searches along a collapse plan: for the coarsest level within an error, and for the coarsest level whose error is
+// in line with those of the finer levels.
+//
+// Both use Search, which bisects between a prefix that is good enough and one that is not, on the logarithm of the
+// triangle count (next()). Each probe is replayed and measured (run()).
+// - find_error_cut() tries the end of the plan first, then bisects until the bracket is within one per cent of the
+//   triangles. With an effort above fast, fewest_with_feedback() then looks for an improved level with as few triangles
+//   as the error allows: from a coarser prefix, else from the one found, else from that of the last level.
+// - keep_in_line() compares an error with what the finer levels lead one to expect (most_in_line()). Where none of them
+//   tells anything, curve_before() measures a level in between. A level that is out of line is replaced by the coarsest
+//   one that is in line, with a bracket within three per cent.
+//
+// Measured errors need not rise along the plan, so what is found is the coarsest of the probes, not of all prefixes.
+// A search never returns a prefix finer than the last level's. The same for any number of threads. O(log n) probes,
+// each of which is measured.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -10,8 +23,8 @@ namespace lodestone::chain::detail {
 
 namespace {
 
-// The coarsest plain level that is good enough, between `good`, a prefix that is or is taken for it, and `bad`, one
-// that is not, until the bracket is within `nearness`. None found: none.
+// Bisection for the coarsest plain level that is good enough: between `good`, a prefix that is, or is taken to be, and
+// `bad`, one that is not, until the bracket is within `nearness`. `best` is empty where no probe was good enough.
 struct Search {
   std::size_t good, bad;
   double nearness;
@@ -31,7 +44,7 @@ struct Search {
     measure_seconds += cut.measure_seconds;
   }
 
-  // The best with the time of all that was tried.
+  // The best level, with the time of everything that was tried.
   MeasuredLevel finish() {
     MeasuredLevel cut = std::move(*best);
     cut.simplify_seconds = simplify_seconds;
@@ -66,9 +79,9 @@ struct Search {
   }
 };
 
-// Shapes a level to as few triangles as `limit` allows, fewer than the last level has (`last`, its prefix). Fitting
-// brings one that is somewhat coarser than the plain one within the limit, and collapses that were not limited one by
-// one make better triangles: that start first.
+// Improves a level to as few triangles as `limit` allows, fewer than the last level has (`last` is its prefix). A level
+// somewhat coarser than the plain one is tried first: fitting brings it within the limit, and its triangles are better
+// than those of collapses that were limited one by one.
 Result<void> fewest_with_feedback(LevelMaker& maker, Search& search, std::size_t last, double limit, const Task& task) {
   constexpr double kCoarserStart = 0.8;
   const CollapsePlan& plan = maker.plan();
@@ -79,7 +92,7 @@ Result<void> fewest_with_feedback(LevelMaker& maker, Search& search, std::size_t
   for (const std::size_t start : starts) {
     Result<MeasuredLevel> cut = maker.with_feedback(start, task.part(0.3), limit);
     LODESTONE_TRY(cut);
-    // One that has fewer triangles than the plan's end is not the end.
+    // A level with fewer triangles than the plan's end does not count as the end.
     const std::size_t reached = std::min(plan.prefix_for(cut->level.triangles), plan.size() - 1);
     if (cut->level.error.measured_error <= limit && std::max(start, reached) > last) {
       cut->prefix = std::max(start, reached);
@@ -108,7 +121,7 @@ Result<MeasuredLevel> find_error_cut(LevelMaker& maker, Starts& starts, double l
       return fail(ok.error());
   }
   if (search.good < starts.with_feedback)
-    search.good = starts.with_feedback;  // improved, the last level holds what plain ones don't
+    search.good = starts.with_feedback;  // plain levels are not within its error: it was improved
   if (!search.best || search.best->prefix != search.good) {
     LODESTONE_TRY(search.take(maker.plain(search.good, task)));
   }
@@ -117,9 +130,9 @@ Result<MeasuredLevel> find_error_cut(LevelMaker& maker, Starts& starts, double l
 
 namespace {
 
-// Where no finer level tells anything, a level half way on the scale of logarithms does: if it is all but exact, too,
-// as much as the least error that tells. Before anything is known, errors below a two-hundredth of the diagonal are no
-// ruin.
+// The curve of errors that a level is compared with. Where no finer level tells anything (tells()), a level half way
+// between, by the logarithm of the triangle count, is measured and counted with at least the smallest error that tells.
+// Left out for errors below a two-hundredth of the diagonal, and where parts may vanish.
 Result<std::vector<CurvePoint>> curve_before(const LevelMaker& maker, const MeasuredLevel& cut,
                                              std::vector<CurvePoint> finer, const Task& task) {
   constexpr double kSmall = 0.005;

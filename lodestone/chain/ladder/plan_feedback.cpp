@@ -1,4 +1,4 @@
-// The part of CollapsePlan that shapes levels by their own measured error.
+// The part of CollapsePlan that improves levels by their own measured error.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -14,7 +14,7 @@ namespace {
 // A weighted run starts from a level of so many times the triangles: it is as good as the original there, and faster.
 constexpr std::size_t kFiner = 6;
 
-// Larger levels stay as they are: correspondences take some 300 bytes a triangle, three times over.
+// Larger levels are not improved: correspondences take some 300 bytes a triangle, three times over.
 constexpr std::size_t kMostTriangles = std::size_t{1} << 21;
 
 // Distances in mesh space and in the scene differ by a factor alone.
@@ -25,7 +25,7 @@ bool is_similarity(const Mat4d& placing) {
          std::abs(dot(y, z)) <= slack && std::abs(dot(z, x)) <= slack;
 }
 
-// Closest points among thousands of slivers, long and all but without width, take a thousand times as long.
+// Among thousands of slivers, long and almost without width, a closest point takes a thousand times as long.
 bool has_many_slivers(const Mesh& mesh) {
   constexpr std::size_t kMany = 1000;
   constexpr double kLong = 0.01, kWidth = 1e-5;  // of the diagonal

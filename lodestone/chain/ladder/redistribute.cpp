@@ -1,5 +1,11 @@
-// Method   worst triangles split, others collapsed, what is new fitted and measured
-// Source   docs/papers/measured-feedback.md
+// One round of redistributing triangles (docs/papers/measured-feedback.md, "Redistributing triangles").
+//
+// redistribute_triangles(): the worst triangles are split (split_worst()). Edges are collapsed down to the count, with
+// weights that make vertices near bad places and on borders the last to go (weights_for(), weight_borders()). What lies
+// within kRings of anything new is fitted and measured again (TrackedLevel); all else is known from the level before.
+// What must not move, collapse or be split is looked up by the vertices' names (of_original(), still_held()).
+//
+// The same bytes for any number of threads. O(n log n) for the collapse and the trees; only what changed is measured.
 #include "lodestone/chain/ladder/redistribute_detail.h"
 
 #include <algorithm>
@@ -16,9 +22,9 @@ namespace {
 
 constexpr double kSplit = 0.75;        // of the maximum: triangles above it are split
 constexpr double kSplitShare = 0.004;  // of all triangles that may be added a round
-constexpr double kWorstWeight = 1e4;   // weight of vertices where the level is worst, so that they stay
+constexpr double kWorstWeight = 1e4;   // weight of vertices where the level is worst
 constexpr int kLocalSolves = 2;
-constexpr float kNoCollapseWeight = 1e8F;  // weight of vertices to leave
+constexpr float kNoCollapseWeight = 1e8F;  // weight of no_collapse and no_move vertices
 constexpr int kRings = 2;                  // around what is new: vertices that are fitted again
 
 // Non-zero for vertices that are where the vertex that they come from was.
@@ -32,7 +38,7 @@ std::vector<std::uint8_t> unmoved(const Mesh& mesh, const std::vector<std::uint3
   return out;
 }
 
-// Vertices farther than `rings` edges from those that are new to a mesh. `far`: those that are not new.
+// Non-zero for vertices more than `rings` edges away from all new ones. `far`: non-zero for those that are not new.
 std::vector<std::uint8_t> far_from_new(const Mesh& mesh, std::vector<std::uint8_t> far, int rings) {
   for (int ring = 0; ring < rings; ++ring) {
     const std::vector<std::uint8_t> last = far;
@@ -45,7 +51,7 @@ std::vector<std::uint8_t> far_from_new(const Mesh& mesh, std::vector<std::uint8_
   return far;
 }
 
-// Of vertices of a level, some of whose triangles have been split: the farther from the original, the heavier.
+// Weights of the vertices of a level some of whose triangles have been split: heavier the farther from the original.
 std::vector<float> weights_for(const TrackedLevel& level, const Mesh& split, const std::vector<std::uint32_t>& names,
                                const RedistributeOptions& options) {
   std::vector<float> weights(split.vertex_count(), 1.0F);
@@ -140,7 +146,7 @@ Result<NamedLevel> redistribute_triangles(const FeedbackSource& source, const Na
   const std::vector<std::uint8_t> kept = of_original(next.names, locked);
   const std::vector<std::uint8_t> no_move = still_held(next.level.mesh(), next.names, options.no_move);
   for (std::size_t v = 0; v < fit.no_move.size(); ++v) {
-    // Fitting would let those out again that were pulled in.
+    // Fitting would move vertices out again that were pulled in.
     if (kept[v] != 0 || no_move[v] != 0 || (pulled[origin[v]] != 0 && still[v] != 0)) fit.no_move[v] = 1;
   }
   next.level.fit(fit, task);

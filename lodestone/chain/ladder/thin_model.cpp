@@ -38,7 +38,7 @@ std::vector<PartSums> sums_of(const Mesh& mesh, const Parts& parts, const Mat4d&
   return out;
 }
 
-// Across in the middle direction: four standard deviations, what an even spread of vertices measures or a little more.
+// The extent along the middle axis: four standard deviations, at least what evenly spread vertices measure.
 double width_of(const PartSums& part) {
   if (!(part.vertices > 0)) return 0;
   const Vec3d mean = part.sum / part.vertices;

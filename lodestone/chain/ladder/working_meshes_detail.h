@@ -10,12 +10,12 @@
 
 namespace lodestone::chain::detail {
 
-/// The placing of each mesh that shows its errors largest: in its space the mesh is simplified, and its errors are the
-/// scene's.
+/// The placing of each mesh that shows its errors largest. The mesh is simplified in that space, so that its errors are
+/// the scene's.
 std::vector<Mat4d> largest_placings(const Model& model);
 
 /// Empty when `constraints` neither welds nor joins; triangles keep their numbers. Vertices of triangles that must not
-/// change (`untouched`, as untouched_triangles() gives them) stay in place. Errors: cancelled, bad_argument.
+/// change (`untouched`, as untouched_triangles() gives them) do not move. Errors: cancelled, bad_argument.
 Result<std::vector<Mesh>> working_meshes(const Model& model, const std::vector<Mat4d>& placings,
                                          const SimplifyConstraints& constraints,
                                          const std::vector<std::vector<std::uint8_t>>& untouched, const Task& task);

@@ -1,11 +1,16 @@
-// From the voxels of a scanner to a model.
+// From a scanner's volume of voxels to a model.
 //
-// 1. range_of(): least and most, and how many voxels hold no number.
-// 2. Without labels: a threshold (asked for, or Otsu's: the one that separates two classes best), smoothing against
-//    noise, an isosurface by marching cubes in the grid's frame.
-//    With labels: the boxes of all numbers in one pass (values that look like grey ones are refused), then for each
-//    label a mask of its box, contoured half way.
-// 3. to_world(): the patient's or file's frame; slices that are unevenly spaced or tilted are placed where they lie.
+// surface_of():
+// 1. range_of(): the smallest and largest value, and how many voxels hold no number.
+// 2. Without labels, choose_iso() takes the threshold that is asked for, or Otsu's [otsu-1979], which separates two
+//    classes of values best. filtered_contour() filters the values (median, Gaussian) where that is asked for, and
+//    contours them by Marching Cubes [lorensen-cline-1987] in the grid's own frame.
+//    With labels, add_labels() finds the boxes of all labels in one pass and contours a mask of each box half way.
+// 3. to_world() (called by contour()) moves the vertices to the frame of the patient or the file. Slices that are
+//    unevenly spaced or tilted come to lie where they belong (Placing); triangles of mirrored frames are turned.
+//
+// Contouring in the grid's frame keeps surfaces closed whatever the placing is. The volume is never changed. The same
+// bytes for any number of threads. O(voxels), and for labels O(voxels of all their boxes).
 #include "lodestone/chain/voxels/volume_surface.h"
 
 #include <fmt/format.h>
@@ -92,7 +97,7 @@ void to_world(const VolumeHeader& header, Mesh& mesh, const Task& task) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
 }
 
-// The surface of values in the frame of a volume, wherever in it their grid lies.
+// The surface of values on a grid in a volume's frame, moved to the world.
 template <class T>
 Result<Mesh> contour(const VolumeHeader& frame, const VolumeView<T>& values, const voxel::IsosurfaceOptions& options,
                      const Task& task) {
@@ -123,7 +128,7 @@ Result<void> add_labels(const ScannedVolume& volume, std::span<const T> values, 
       const auto soft = voxel::gaussian(voxel::padded(mask, voxel::gaussian_reach(sigma)), sigma, task);
       LODESTONE_TRY(soft);
       Result<Mesh> smoothed = contour(volume.header, soft->view(), {127.5}, task);
-      if (smoothed) mesh = std::move(smoothed);  // a label of a few voxels may blur away: it stays as it is
+      if (smoothed) mesh = std::move(smoothed);  // a label of a few voxels may blur away: it is not smoothed then
     }
     LODESTONE_TRY(mesh);
     mesh->name = fmt::format("label {}", label);

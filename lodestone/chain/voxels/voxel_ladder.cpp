@@ -1,3 +1,18 @@
+// Ladders whose levels are new surfaces made from voxels, all from one solid ([voxel-lod], section 2.2).
+//
+// build_voxel_ladder():
+// 1. targets_of(): a count or an error for each level. finest_for() says which resolution the first, the finest, needs,
+//    and VoxelLevels::create() makes a solid that is fine enough for it.
+// 2. separate_levels(): add_levels() contours a surface for each target (cut_for()) and measures it (make_level()).
+//    The search for a level starts from the resolution of the level before.
+//    collapse_levels(), with `then_collapse`: one fine surface, from which build_ladder() collapses all levels.
+// 3. add_attributes(): normals and colours, or textures, from the original.
+// 4. compare_pictures(), where pictures are asked for, only now that the levels have their colours.
+//
+// Every level is measured against the original, not against the fine surface, and errors never fall (level_error()).
+// A target that no resolution reaches is a Shortfall; where nothing is left at all, the ladder ends. The same bytes for
+// any number of threads. Cost: one fine voxelization, a surface for each resolution that is tried, and a measurement of
+// each level; for errors, of each surface that is tried.
 #include "lodestone/chain/voxels/voxel_ladder.h"
 
 #include <fmt/format.h>

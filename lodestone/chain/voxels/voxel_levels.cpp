@@ -1,12 +1,20 @@
-// The order of work of [voxel-lod], section 2.2: the model is voxelized once, finely, and each level comes from that.
+// Surfaces of one model at any resolution, all from one voxelization ([voxel-lod], section 2.2; docs/papers/voxel.md).
 //
-// 1. create(): a Solid (chain/solid) of at least `supersample` voxels a voxel of the finest level. Where it does not
-//    fit into memory, only the surface is kept and voxels are made slab by slab when a level is asked for.
-// 2. even_surface_at(): the solid is resampled to the level's resolution and contoured: by the paper's march along the
-//    edge (edge_ratio), by the share of each voxel that is inside (linear, project), or with one vertex in a cube
-//    (sharp). With keep_volume the iso is sought, by halving, at which the surface encloses as much as the solid.
-// 3. surface_at(): with `adaptive`, flat regions are merged by edge collapse within a part of a voxel.
-// 4. vanished(): parts of the model that have no vertex within a voxel of the surface are told.
+// 1. create() makes a Solid (solid.h) with `supersample` voxels along each side of a voxel of the finest level. Where
+//    that does not fit into memory (needs_slabs()), of_grid() keeps the model's surface alone; surface_by_slabs() then
+//    makes the voxels slab by slab for each level.
+// 2. surface_at() makes a level: even_surface_at() resamples the solid to the level's resolution and contours it, in
+//    the way that `placement` says:
+//    - edge_ratio: the march along the edge of the paper (section 2.4.4),
+//    - linear, project: Marching Cubes [lorensen-cline-1987] where the share of each voxel that is inside reaches a
+//      half; project then moves vertices to the model. With keep_volume, contour_of_volume() bisects for the iso whose
+//      surface encloses the solid's volume.
+//    - sharp: one vertex in each cut cube, on the model's edges and corners.
+//    With `adaptive`, edges are then collapsed as long as the surface moves by less than that share of a voxel.
+// 3. vanished() names the model's pieces of which no vertex lies within a voxel of the surface.
+//
+// The solid never changes, so levels do not depend on each other. The same bytes for any number of threads. A level
+// costs O(voxels of the solid) to resample, and O(log n) for each vertex that is moved to the model.
 #include "lodestone/chain/voxels/voxel_levels.h"
 
 #include <fmt/format.h>
@@ -43,7 +51,7 @@ Result<void> check(const VoxelOptions& options, std::uint32_t finest) {
   return {};
 }
 
-// Above this a solid and the shares of a level are not held in memory whole.
+// Above this a solid and the shares of a level are not kept in memory as a whole.
 constexpr double kWholeBytes = 1.2e9;
 
 bool needs_slabs(const VoxelGrid& grid, std::uint32_t supersample, const VoxelOptions& options,

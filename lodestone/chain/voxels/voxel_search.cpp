@@ -1,9 +1,16 @@
-// Which resolution gives a wanted count or error.
+// Which resolution gives a wanted number of triangles, or a wanted error.
 //
-// Triangles of a voxel surface grow with the square of its resolution, and errors shrink about with its inverse. So a
-// coarse surface is counted first (growth_of()), which tells how fine the solid must be; then find_count() and
-// find_error() go by these laws between two resolutions, one too coarse, the other too fine, until they are neighbours
-// or within some percent. Levels that are collapsed afterwards start from a surface that is several times finer.
+// The triangles of a surface by voxels grow with the square of the resolution ([voxel-lod], section 3.4), and its error
+// falls roughly with the inverse of it.
+// 1. finest_for() says how fine the solid must be. For a count, growth_of() contours coarse solids until one has
+//    triangles enough to count. start_triangles() says how many triangles a surface needs that is collapsed afterwards.
+// 2. cut_for() makes the surface. find_count() and find_error() step by these laws, between a resolution that is too
+//    coarse and one that is too fine, until they meet a count within a tenth from below, or an error with a bracket
+//    within four per cent of the resolution. They give up after eight and twelve tries.
+// 3. shortfall_of() and tell_vanished() put into words what was missed.
+//
+// A count is never exceeded by find_count(), and a surface for an error was measured within it; else a shortfall says
+// so. The same for any number of threads. Cost: that of the surfaces tried, and for errors of measuring them.
 #include "lodestone/chain/ladder/level_error_detail.h"
 #include "lodestone/chain/voxels/voxel_search_detail.h"
 
@@ -20,10 +27,10 @@ namespace {
 
 constexpr std::uint32_t kLeast = 4, kMost = 16'384;
 constexpr std::uint32_t kUsual = 128;
-constexpr std::uint32_t kMostForError = 512;  // finer surfaces than that are asked for by name
+constexpr std::uint32_t kMostForError = 512;  // for finer surfaces a resolution must be given
 
-// How fine the surface must be that is collapsed, so that the target's error is not that of the voxels. Where holes are
-// closed, fine solids cost too much, and thin sheets get a topology that no collapse takes back.
+// How fine a surface must be that is collapsed afterwards, so that the voxels add little to the target's error. Where
+// holes are closed, fine solids cost too much, and thin sheets get a topology that no collapse can undo.
 constexpr std::size_t kStart = 16, kLeastStart = 200'000, kMostStart = 4'000'000, kStartOfOpen = 8;
 constexpr double kStartError = 3;
 
@@ -34,7 +41,7 @@ std::uint32_t clamped(double resolution, std::uint32_t most) {
 
 // A surface at resolution r has about `per_square` r² triangles.
 struct Growth {
-  double per_square = 0;  // 0: nothing is left even of fine solids
+  double per_square = 0;  // 0: even fine solids leave too few triangles to count
   voxel::FillRule fill = voxel::FillRule::parity;
 };
 
@@ -73,7 +80,7 @@ Result<VoxelCut> find_count(VoxelLevels& levels, std::size_t triangles, std::uin
   const auto wanted = static_cast<double>(triangles);
   VoxelCut best;
   std::uint32_t resolution = std::clamp(guess, kLeast, levels.most_resolution());
-  std::uint32_t above = levels.most_resolution() + 1, below = kLeast - 1;  // counts too large, and not
+  std::uint32_t above = levels.most_resolution() + 1, below = kLeast - 1;  // too many triangles, and not
   for (int turn = 0; turn < 8; ++turn) {
     Result<Mesh> mesh = levels.surface_at(resolution, task);
     if (!mesh && mesh.error().code != ErrorCode::empty) return fail(mesh.error());

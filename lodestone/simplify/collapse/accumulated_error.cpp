@@ -1,9 +1,21 @@
-// Accumulated errors: how far the surface has come from the original: each vertex carries an estimate, which every
-// collapse adds to.
+// The accumulated error of a vertex: an estimate of how far the surface there is from the original.
 //
-// A collapse moves the surface by how far the new vertex lies from the old triangles, and the old vertices from the new
-// triangles. To each distance comes the accumulated error that was there before, interpolated. Costs weigh by area, so
-// they are blind to thin tips, and memoryless, so they forget what was lost before; the accumulated error sees both.
+// Costs of collapses are blind in two ways. They weigh by area, so a thin tip costs next to nothing. They are
+// memoryless, so small losses add up unseen. Therefore each vertex carries an estimate, and a collapse costs at least
+// what the square of the estimate it leaves says (docs/papers/edge-collapse.md, "Drift").
+//
+// FanDistance measures from a point to the fan of triangles around a vertex, four triangles at a time. To the distance
+// it adds the accumulated error at the nearest point, interpolated from the corners:
+// - error_above(): the nearest triangle that the point lies above or below,
+// - error_at_edges(): the nearest edge,
+// - error_at(): the first if there is such a triangle, else the second.
+// Sweeper::error_after() takes the largest of three: the new vertex against the old triangles, and each old vertex
+// against the new triangles. For the new vertex the fan of the nearer end is asked first. That of the farther end is
+// asked only where the first has no triangle above or below, or where its answer would raise the cost; the smaller of
+// both counts then.
+//
+// An estimate, not a bound. Distances below what positions are rounded by count as 0. O(valence), without allocations
+// once the buffers have grown.
 #include <algorithm>
 #include <cmath>
 

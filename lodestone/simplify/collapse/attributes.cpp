@@ -1,10 +1,20 @@
-// What a collapse does to attributes: wedge-wise quadrics (Hoppe 1999), memoryless like those of positions.
+// What a collapse does to attributes: quadrics for each wedge [hoppe-1999], memoryless like those of positions.
 //
-// Over each triangle an attribute is a linear function of position. About a wedge whose value is s, every triangle of
-// the wedge predicts s + g (x - p), g being its gradient there. A merged wedge at x takes the value that errs least
-// from what the triangles of both ends predict, weighed as for positions; what is left over is the cost. As all
-// triangles of a wedge agree on its value, constant terms vanish and few sums are kept: weight, weight g and, over all
-// attributes, weight g g^T.
+// Over a triangle an attribute is a linear function of position. About a wedge at p with value s, each triangle of the
+// wedge predicts s + g (x - p), where g is its gradient. When two wedges merge at x, the merged one takes the value
+// that errs least from what the triangles of both predict, weighed as for positions. The squared deviation that is left
+// is the cost. As all triangles of a wedge agree on s, constant terms vanish and few sums are needed: weight, weight g,
+// and, over all attributes together, weight g g^T.
+//
+// 1. take_attributes(): values scaled to lengths, so that costs of attributes and positions can be added.
+// 2. renew_attribute_quadrics(): the sums above, for all wedges of a vertex, from its star as it is.
+// 3. attribute_cost(), edge_attribute_cost(): the cost for a pair of wedges (merged_cost()), and for the pairs across
+//    an edge.
+// 4. best_values(): the values that err least. project() and blend_towards() say how near to them a mix of existing
+//    wedges gets; a mix lies within what they span, so no value leaves its range.
+// 5. turns_uv(): whether a triangle turns over in a texture.
+//
+// O(valence * numbers a wedge) for a vertex, O(numbers a wedge) for a pair. Sums in a fixed order.
 #include <algorithm>
 #include <cmath>
 #include <limits>

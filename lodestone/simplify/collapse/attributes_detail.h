@@ -24,8 +24,8 @@ struct AttributePair {
   bool moved;                                 // false = the kept vertex stays, with its values
 };
 
-/// Squared deviation of attributes over the triangles of both wedges when they merge at `to`, each triangle weighed as
-/// for positions.
+/// Squared deviation of attributes over the triangles of both wedges when they merge at `to`; each triangle is weighed
+/// as for positions.
 float attribute_cost(const State& state, const AttributePair& pair, Vec3f to);
 
 /// The same for the wedges across an edge with these triangles.

@@ -1,4 +1,20 @@
-// Quadrics, and what collapsing an edge would cost.
+// Quadrics of vertices, and for each edge where its two vertices merge best and what that costs.
+//
+// Quadrics are those of [garland-heckbert-1997], made memoryless and volume-preserving as in [lindstrom-turk-1998].
+// Weights, and what differs from the papers: docs/papers/edge-collapse.md, "Cost and placement".
+//
+// 1. renew_quadric(): the quadric of a vertex about itself, from its star as it is (renew_position_quadric()). Vertices
+//    on feature edges also get the squared distances to the lines of these edges (add_lines()), which hold borders and
+//    seams in place. Wedges get theirs in attributes.cpp.
+// 2. EdgeEvaluator::add_edges() (candidates_detail.h) finds a vertex's edges and the triangles at each, through
+//    collect_spokes() where the star is not one closed fan.
+// 3. add() leaves out edges that can never collapse and decides which end stays: of two classes the higher, with the
+//    position that it has (place_at()). Ends of one class are both free: add_free() puts them into groups of four.
+// 4. flush() places a group at once (place_freely(), solve_detail.h). The cost is that of positions and attributes, at
+//    least that of the accumulated error, times the importance of the ends.
+//
+// Four edges at once give the same bits as one, and the output keeps the order of the input: the result depends on the
+// mesh alone. O(valence) for a vertex, O(1) for an edge.
 #include <algorithm>
 #include <array>
 
@@ -10,8 +26,8 @@ namespace lodestone::simplify::detail {
 
 namespace {
 
-// Weight of a feature edge's line against the planes (area against area): 1 to 20 make no difference, 0 lets borders
-// shrink.
+// Weight of a feature edge's line against the planes (area against area). 1 to 20 make no difference; without it
+// borders shrink.
 constexpr float kLineWeight = 4.5F;
 
 Float4 load(const TriangleNormal& t) { return *reinterpret_cast<const Float4*>(&t); }

@@ -1,4 +1,18 @@
-// Vertex classes: what may move, and along what.
+// Vertex classes: what may move, and along what (docs/papers/edge-collapse.md, "Vertex classes").
+//
+// A feature edge is a border, a seam, an edge between two face groups, or a non-manifold edge (is_feature_edge()). A
+// seam counts only where a stream other than normals and tangents differs. classify_vertices() looks at each vertex:
+// 1. is_plain(): one closed fan of triangles that turn the same way, without a feature edge. Most vertices are that,
+//    and done: interior.
+// 2. Fans::look_at() lists the triangles at each spoke; Fans::classify() joins those across spokes that are no feature
+//    edges into fans (union-find). One fan and no feature edge: interior. Exactly two feature edges, and every fan
+//    reaches from the one to the other (every_fan_joins_both()): feature, so that borders, seams and the spines of
+//    several sheets can collapse along themselves. Everything else is no_move, with its cause.
+// 3. The options come last: vertices that are no_move by request, and those of borders with keep_border.
+//
+// Runs once, before the first pass: collapses leave classes as they are, since features collapse only along themselves.
+// Vertices don't depend on each other: the same for any number of threads. O(valence) for plain vertices, else
+// O(valence log valence).
 #include <algorithm>
 #include <numeric>
 

@@ -1,13 +1,20 @@
-// Collapses edges, cheap ones first, until so many triangles are left or the next would err too much.
+// Edge collapse, cheap edges first, down to a number of triangles or up to an estimated error.
 //
-// Costs are those of Lindstrom & Turk 1998: memoryless, so quadrics (Garland & Heckbert 1997) are made from the
-// triangles as they are now, and a new vertex lies where the volume stays as it is. Legal is a collapse that keeps the
-// surface's topology (the link condition, Dey et al. 1999) and turns no triangle over.
+// Costs and positions follow [lindstrom-turk-1998]: memoryless and volume-preserving, from quadrics as in
+// [garland-heckbert-1997]. A legal collapse keeps the topology (the link condition, [dey-1999]) and turns no triangle
+// over. What differs from the papers: docs/papers/edge-collapse.md.
 //
-// There is no queue that follows every change. It goes in passes: stars and quadrics of all vertices, the cost of every
-// edge that may go, the cheapest share of them in order of cost; each is collapsed if nothing near it has changed in
-// this pass; then what is gone is cleared away. A pass is linear and removes a fixed share of what is left: O(n log n)
-// in all. What was done is recorded, and the record makes any level (collapse_log.h).
+// collapse_edges():
+// 1. make_state() (state.cpp) builds a working mesh of flat arrays.
+// 2. run_passes() calls run_pass() (pass.cpp) until the target is met. Each pass collapses about the cheapest half of
+//    the edges (kShare) all over the mesh; sweeps take the edges of a range of vertices from queues by cost. A pass
+//    that collapses little doubles the share. When nothing is left at all, narrow folds are allowed (kBladeCosine).
+// 3. make_log() turns the steps into a CollapseLog, whose positions are in mesh space and whose errors never fall.
+// 4. find_prefix() finds how much of it meets the targets, and replay() makes the mesh from that.
+//
+// The order of steps depends neither on the targets nor on the number of threads: any level is a prefix of the log.
+// Closed manifold input stays closed and manifold. The input mesh is not changed. A pass takes linear time and removes
+// a share of what is left, as long as there is something legal to remove: O(n log n) or better.
 #include "lodestone/simplify/collapse/edge_collapse.h"
 #include "lodestone/base/memory.h"
 
@@ -76,8 +83,8 @@ struct Run {
   std::vector<WedgeMerge> merges;
 };
 
-// Passes until the count or the error limit is passed, or nothing moves any more. The order of steps does not depend on
-// either.
+// Passes until the count or the error limit is passed, or nothing collapses any more. Neither of them has a say in the
+// order of the steps.
 Run run_passes(State& state, const EdgeCollapseOptions& options, const Task& task) {
   Run run;
   run.steps.reserve(state.positions.size());  // what is not used is never touched, and so costs nothing
@@ -179,7 +186,7 @@ LockCounts count_locks(const State& state) {
   return counts;
 }
 
-// What the record needs no more: the most of the memory of a run, kept at the size that it began with.
+// Frees what the record does not need: most of the memory of a run, whose arrays never shrink.
 void release_mesh(State& state) {
   free_memory(state.positions, state.accumulated_error, state.triangles, state.wedges, state.normals,
               state.first_normals, state.quadrics, state.notes, state.classes, state.stars, state.wedge_normals,

@@ -75,8 +75,8 @@ struct EdgeCollapseResult {
 /// Collapses edges until a target holds. Lindstrom & Turk 1998 (memoryless, volume-preserving placement) in passes over
 /// flat arrays; see docs/papers/edge-collapse.md. Closed manifold input gives closed manifold output. Same bytes for
 /// any number of threads. Time O(n log n). Positions and errors in model units. Errors: bad_argument (neither target
-/// set, wrong size of `no_move` or `weights`, a weight below 0 or not finite, a metric
-/// that is not finite; those of validate()), cancelled.
+/// set, wrong size of `no_move` or `weights`, a weight below 0 or not finite, a metric that is not finite; those of
+/// validate()), cancelled.
 Result<EdgeCollapseResult> collapse_edges(const Mesh& mesh, const EdgeCollapseOptions& options = {}, Task task = {});
 
 }  // namespace lodestone::simplify

@@ -1,15 +1,17 @@
-// One pass of edge collapse over the whole mesh: the cheapest share of the edges goes, everywhere at once.
+// One pass of edge collapse: about the cheapest share of all edges is collapsed, all over the mesh, in parallel
+// (docs/papers/edge-collapse.md, "Passes").
 //
-// 1. prepare(): quadrics of all vertices, and which of them have their whole ring in their range of vertices.
+// run_pass():
+// 1. prepare(): the quadrics of all vertices, and which vertices have their whole ring in their own range of numbers.
 // 2. cost_limit(): the cost below which about `share` of the edges lie, from a sample of the vertices.
-// 3. sweep_first(): each range is swept apart, in parallel: an edge is its own when the rings of both ends lie in it,
-//    so that it meets no other range's work. sweep_second() does the same for ranges half a range on, after
-//    renew_quadrics(); sweep_rest() takes the edges that cross both cuts, on one thread.
-// 4. append_steps(): the record tells all by cost, a step never before one that it builds on: any prefix is a mesh from
-//    which the cheapest edges are gone everywhere.
+// 3. sweep_first(): each range is swept by a Sweeper of its own, in parallel. It takes edges both of whose rings lie in
+//    the range, so it meets no other range's work. sweep_second(), after renew_quadrics(), does the same for ranges
+//    that lie half a range on. sweep_rest() takes the edges that cross both cuts, on one thread.
+// 4. append_steps(): the steps of all sweeps in order of cost, none before a step that it builds on. Any prefix of the
+//    record is then a mesh from which the cheapest edges are gone everywhere.
 // 5. compact(): what is gone is cleared away, in order, so that the next pass runs over dense arrays.
 //
-// Ranges are cut by vertex numbers alone, so the record is the same for any number of threads. O(n) a pass.
+// Ranges are cut by vertex numbers alone: the record is the same for any number of threads. O(n) a pass.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,7 +31,7 @@ constexpr std::size_t kRange = 8192;
 // 0.995 0.97, 0.961 0.92; 1 1.054 1.14, 1.010 0.95, 0.993 0.88.
 constexpr float kErrorWeight = 0.5F;
 
-// Marks the vertices whose rings lie in their range; ranges begin at multiples of kRange less `shift`.
+// Whether a vertex and its ring lie in one range; ranges begin at multiples of kRange less `shift`.
 template <class Corners>
 bool is_inner(std::uint32_t v, std::size_t shift, Corners corners) {
   std::size_t lowest = v, highest = v;
@@ -122,7 +124,7 @@ void sweep_first(State& state, float max_cost, std::vector<Sweeper>& sweepers, c
   });
 }
 
-// Quadrics that the sweeps before had to leave as they were.
+// Renews quadrics that earlier sweeps have left stale.
 void renew_quadrics(State& state, const Task& task) {
   parallel_for(state.positions.size(), 4096, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {

@@ -1,4 +1,19 @@
-// Building the working mesh: which triangles take part, the frame, the order in memory.
+// The working mesh of an edge-collapse run: which triangles take part, in what frame, in what order in memory
+// (docs/papers/edge-collapse.md, "The working mesh").
+//
+// make_state():
+// 1. choose_frame(): floats about the centre of the box, after the linear map `metric`, scaled by a power of two so
+//    that areas are near one.
+// 2. space_filling_order(): vertices along a Morton curve, so that neighbours are near in memory.
+// 3. take_wedges(): charts, that is classes of wedges that differ in normals and tangents alone, and the normals.
+// 4. take_triangles(): the triangles that take part, by their lowest vertices (sort_triangles()). Degenerate ones and
+//    those that repeat another in the same direction (mark_doubles()) are dropped. Of two that lie back to back on the
+//    same wedges one stands for both (find_backs()): sheets modelled with two faces would be non-manifold everywhere.
+// 5. take_attributes() (attributes.cpp) and classify_vertices() (classify.cpp).
+// build_stars() lists the triangles around each vertex, here and after every pass.
+//
+// The input is not changed; what takes no part is listed in State::dropped. Sorts are stable and numbers decide between
+// equals: the same for any number of threads. O(n log n) for make_state(), O(n) for build_stars().
 #include "lodestone/simplify/collapse/state_detail.h"
 
 #include <algorithm>

@@ -203,8 +203,8 @@ struct State {
   std::span<const std::uint32_t> star_of(std::uint32_t v) const { return {stars[v].entries, stars[v].count}; }
 };
 
-/// Vertices with more triangles than this sit out a pass (others may still collapse into their neighbours), which
-/// bounds time.
+/// Vertices with more triangles than this take no part in a pass, which bounds its time; other vertices are free to
+/// collapse around them.
 inline constexpr std::size_t kMaxValence = 512;
 
 /// Star entries have two bits for the corner.

@@ -1,8 +1,20 @@
-// The sweep: one collapse after the other, each checked against the mesh as it is at that moment.
+// The sweep of a range of vertices: one collapse after the other, each checked against the mesh as it is at that moment
+// (docs/papers/edge-collapse.md, "The sweep").
 //
-// A candidate waits in the queue with the cost that it had when it was put there. When its turn comes and a vertex has
-// merged into one of its ends since, it is dropped: that collapse has put the new edges into the queue. When only the
-// ring around it has changed it is evaluated anew, and goes back if it has become dearer.
+// run() takes candidates from a queue of cost bins, first in, first out within a bin. A candidate has the cost of when
+// it was put there. try_collapse() looks at it again:
+// 1. If a vertex has merged into one of its ends since, it is dropped: that collapse has queued the new edges. If only
+//    the ring has changed, refresh() evaluates it anew, and puts it back if it has become dearer.
+// 2. link_allows(): the link condition [dey-1999]. flips(): no triangle turns too far or becomes a needle. folds(): no
+//    new fold ([progressive-mesh], section 3.2).
+// 3. error_after() (accumulated_error.cpp): the accumulated error, which can raise the cost.
+// 4. pair_wedges(), blend_wedges(), turns_textures() (wedges.cpp): what becomes of attributes, and what that costs.
+// 5. If the cost now belongs to a later bin, the candidate goes back. Otherwise record() writes the step, apply()
+//    changes the mesh, and add_new_edges() queues the new vertex's edges.
+//
+// A sweep changes only what lies in its zone, so sweeps of other ranges can run beside it. Its order depends on costs
+// and on the order of entry alone: the same for any number of threads. O(valence) a candidate as a rule; kMaxValence
+// bounds the worst case.
 #include <algorithm>
 #include <cmath>
 
@@ -170,7 +182,7 @@ bool Sweeper::flips(const Candidate& candidate, bool moved) {
       const float squares = before_sq * after_sq;
       if (!(d > 0 && d * d > kMinTurnCosineSq * squares)) return true;
       const PackedDirection first = state_.first_normals[c.triangle];
-      if (first.dot(after) < 0 && first.dot(before) >= 0) return true;  // little by little it has turned over
+      if (first.dot(after) < 0 && first.dot(before) >= 0) return true;  // it has turned over in small steps
       turns_.back() = d * d > kTurnsLittleSq * squares ? 0 : 1;
       if (after_sq < kNeedleSineSq * length_sq(a) * length_sq(b) && after_sq < before_sq) return true;
     }
@@ -241,7 +253,7 @@ void Sweeper::record(const Candidate& candidate, bool moved, float error) {
     if (vanishes && !state_.has_back.empty()) step.faces += state_.has_back[c.triangle];
   }
   step.moved = moved;
-  // What this collapse builds on has left its place around here.
+  // Steps that this one builds on have left their places in the order at the vertices around.
   step.order = bin_of(candidate.cost);
   for (const std::span<const Corner> corners : {kept_, removed_}) {
     for (const Corner& c : corners) {
@@ -362,7 +374,7 @@ void Sweeper::try_collapse(Candidate candidate) {
       error = std::max(error, attribute_error(candidate, moved));
     }
   }
-  if (bin_of(cost) > bin_) {  // dearer than its queue knew: its turn comes later
+  if (bin_of(cost) > bin_) {  // dearer than the queue knew: its turn comes later
     candidate.stamp = collapse_;
     if (is_possible(cost, max_cost_)) push(candidate, cost);
     return;

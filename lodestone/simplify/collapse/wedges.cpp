@@ -1,4 +1,19 @@
-// What becomes of wedges and their attributes in a collapse.
+// What becomes of wedges and their attributes in a collapse: the part of Sweeper that deals with them
+// (docs/papers/edge-collapse.md, "Attributes").
+//
+// 1. pair_wedges(): each wedge of the removed vertex needs a wedge of the kept one that takes over: across the edge's
+//    triangles; or, where only normals are split, the one of the same chart with the nearest normal (nearest_normal()).
+//    Without such a wedge the edge can't collapse.
+// 2. blend_wedges(): the values of the merged wedges. A vertex with one wedge that lies on no feature gets as near as
+//    it can to the values that err least, between its own, its partner's and those of a third vertex (blend_one()).
+//    Otherwise all wedges go the same share of the way to their partners (blend_all()): along features the share where
+//    the new position lies on the edge (share_by_place()), else the one that errs least (share_by_values()).
+// 3. attribute_error(): the deviation that this leaves, as a length, for the estimated error of the step.
+// 4. turns_textures(): whether a surviving triangle would turn over in a UV set.
+//
+// Blends are recorded as shares between wedges of the input, so that replay repeats them on the original values, and
+// no value leaves the range that the wedges span. What agreed across a hard edge agrees afterwards. O(valence * numbers
+// a wedge).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -114,8 +129,8 @@ void Sweeper::blend_one(const Candidate& candidate) {
   if (blend.third != kNone) merging_.push_back({merge.kept, blend.third, blend.to_third, false});
 }
 
-// What becomes of the wedges: merging_, and where attributes have a say merged_values_. Returns what this costs beyond
-// what the candidate's cost knows, the wedges across the edge.
+// Fills merging_ and, where attributes have a say, merged_values_. Returns the cost of the pairs that do not lie across
+// the edge: the candidate's cost holds those across it already.
 float Sweeper::blend_wedges(const Candidate& candidate, bool moved) {
   merging_.clear();
   for (const auto& [removed, kept] : pairs_) merging_.push_back({kept, removed, 0, true});

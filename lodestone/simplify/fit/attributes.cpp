@@ -1,13 +1,16 @@
 // Attributes that follow vertices which fitting has moved, so that textures don't swim.
 //
-// carry_attributes() asks for each moved vertex where on the original its old and its new position are nearest
-// (chart_point()), and adds the difference of the original's values there to each of its wedges (carry()): normals,
-// texture coordinates, colours and other numbers. So what collapses have chosen to differ stays different. Nothing is
-// carried where the two points lie in different charts, or where a wedge's value is farther from the original's than
-// its neighbours are (reach()): the closest point is in somebody else's chart then. Normals come out with length 1,
-// colours within their range.
+// carry_attributes():
+// 1. partners() finds the original's stream for each stream of the level that is carried: normals, texture coordinates,
+//    colours and other numbers.
+// 2. For each wedge of a moved vertex, chart_point() finds the points of the original that are closest to the vertex's
+//    old and new position. Nothing is carried where these lie in different charts.
+// 3. carry() adds the difference of the original's values between both points to the wedge's own. What collapses have
+//    chosen to differ from the original stays different. Where the wedge's value is farther from the original's than
+//    from those of its neighbours (reach()), the closest point belongs to another chart, and nothing is carried.
 //
-// Each wedge is worked on by itself: the same bytes for any number of threads. O(vertices log triangles).
+// Normals come out with length 1, colours within their range. Wedges don't depend on each other: the same bytes for any
+// number of threads. O(wedges log triangles).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -98,7 +101,7 @@ void carry(const AttributeStream& original, const std::vector<T>& from, std::uin
     const double d = static_cast<double>(before[std::size_t{wedge} * n + c]) - then;
     off += d * d;
   }
-  // The closest point may be in another chart than the wedge; its values are elsewhere then.
+  // The closest point may be in another chart than the wedge, where values differ.
   if (std::sqrt(off) > reach(before, n, wedge, around)) return;
   double length_sq = 0;
   for (std::uint32_t c = 0; c < n; ++c) {

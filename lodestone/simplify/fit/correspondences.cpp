@@ -1,19 +1,19 @@
-// How far a level is from its original, kept up to date while the level changes.
+// How far a level is from its original: correspondences, found once and brought up to date while the level changes.
 //
 // A correspondence joins a point of the level to a point of the original: points of the original to the closest point
-// of the level, and points of each triangle of the level to the closest point of the original. Their weights are shares
-// of area, so sums over them stand for integrals over both surfaces (docs/papers/measured-feedback.md).
+// of the level, and points of each triangle of the level to the closest point of the original. Weights are shares of
+// area, so sums stand for integrals over both surfaces (docs/papers/measured-feedback.md, "Correspondences").
 //
 // find_correspondences():
-// 1. tie_points(): every stride_for()-th point of the original asks the level's tree.
-// 2. tie_level(): three inner points of each triangle ask the original's tree; sort_by_triangle() groups all.
-// 3. probe_corners(): the distance of each vertex, for the maximum; add_up(): mean, maximum and energy, in a fixed
-//    order.
-// With a level that is Known, same_triangles() finds what both have in common; keep_points() and keep_level() look
-// again only where a NearMask of the new triangles says that a partner could have changed. The result is that of asking
-// anew. update_correspondences() does the same for edges that have been turned. probe_worst_errors() looks closer at
-// triangles whose error comes near the maximum: lattices of points on each, coarse and then fine, never twice on the
-// same triangle.
+// 1. tie_points(): every stride_for()-th point of the original asks the level's tree. tie_level(): three inner points
+//    of each triangle of the level ask the original's tree.
+//    With a Known level, same_triangles() finds what both levels have in common. keep_points() and keep_level() then
+//    look again only where a new triangle could be nearer (NearMask), or an old one is gone.
+// 2. sort_by_triangle() groups them; add_up() sums mean and energy in a fixed order.
+// 3. probe_corners(): the distance of each vertex of the level, for the maximum.
+// update_correspondences() does the same for pairs of triangles whose common edge has been turned.
+// probe_worst_errors() looks closely at triangles whose error comes near the maximum: at lattices of points, wide ones
+// and then narrow ones, never twice on the same triangle.
 //
 // The same bytes for any number of threads. O((points + triangles) log triangles).
 #include <algorithm>
@@ -43,7 +43,7 @@ Correspondence correspondence_at(const spatial::Surface& level, std::uint32_t tr
   return {triangle, static_cast<float>(w[1]), static_cast<float>(w[2]), weight, partner};
 }
 
-// Every how many-th point of the original is enough for a level: some 24 a triangle, 100,000 at least.
+// Every stride-th point of the original is enough for a level: some 24 a triangle, and 100,000 on top.
 std::size_t stride_for(std::size_t points, std::size_t triangles) {
   return std::max<std::size_t>(1, points / (24 * triangles + 100'000));
 }
@@ -74,7 +74,7 @@ double area_of(const spatial::Surface& level) {
   return area;
 }
 
-// The k-th point of a triangle of the level, without a partner. `area`: of the level.
+// A correspondence for the k-th point of a triangle of the level, its partner not yet found. `area`: of the level.
 Correspondence level_correspondence(std::size_t t, const std::array<Vec3d, 3>& corners, std::size_t k, double area) {
   const double own = length(scaled_normal(corners[0], corners[1], corners[2])) / 2;
   return {static_cast<std::uint32_t>(t),
@@ -84,7 +84,7 @@ Correspondence level_correspondence(std::size_t t, const std::array<Vec3d, 3>& c
           {}};
 }
 
-// A point of the original goes to the nearer of two triangles.
+// Moves a correspondence of a point of the original to the nearer of two triangles.
 void join_nearer(const TrianglePair& pair, const std::array<std::array<Vec3d, 3>, 2>& corners,
                  Correspondence& correspondence) {
   ClosestPoint best{{}, std::numeric_limits<double>::infinity()};
@@ -135,7 +135,7 @@ void raise(TriangleError& worst, const TriangleError& other) {
   if (other.distance > worst.distance) worst = other;
 }
 
-// Distances of the level's vertices, those that are not known; told to all triangles around them.
+// Finds the distances of the level's vertices that are not known, and raises the worst of all triangles around them.
 void probe_corners(const FitTarget& target, const spatial::Surface& level, const std::vector<std::uint8_t>& is_known,
                    Correspondences& correspondences, const Task& task) {
   std::vector<std::uint32_t> wanted;
@@ -234,7 +234,7 @@ spatial::Surface new_triangles(const spatial::Surface& level, const std::vector<
   return out;
 }
 
-// Cells of a grid over a surface: which could hold a point that is nearer than `reach` to one of its triangles.
+// The cells of a grid over a surface in which a point could be nearer than `reach` to one of its triangles.
 class NearMask {
  public:
   NearMask(const spatial::Surface& surface, double reach) : origin_(surface.bounds.min - Vec3d{reach, reach, reach}) {
@@ -273,7 +273,7 @@ class NearMask {
   std::vector<std::uint64_t> rows_ = std::vector<std::uint64_t>(std::size_t{kCells} * kCells, 0);
 };
 
-// As tie_points(): a point keeps its partner where that is there still, unless a new triangle is nearer.
+// As tie_points(), but a correspondence whose triangle is still there is taken over, unless a new triangle is nearer.
 void keep_points(const spatial::Surface& level, const spatial::Bvh& tree, const spatial::Surface& fresh,
                  const std::vector<std::uint32_t>& new_of, const Known& known,
                  std::span<Correspondence> correspondences, const Task& task) {
@@ -283,7 +283,7 @@ void keep_points(const spatial::Surface& level, const spatial::Bvh& tree, const 
   const NearMask mask(fresh, known.correspondences.max);
   parallel_for(new_of.size(), kChunk / 8, task, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<spatial::Nearest> near;
-    std::vector<std::uint32_t> lost;  // correspondences whose triangle is there no more
+    std::vector<std::uint32_t> lost;  // correspondences whose triangle is gone
     for (std::size_t old = begin; old < end; ++old) {
       // Correspondences of the original's points before this triangle: all correspondences less the level's.
       const std::uint32_t first = known.correspondences.first[old],
@@ -322,7 +322,7 @@ void keep_points(const spatial::Surface& level, const spatial::Bvh& tree, const 
   });
 }
 
-// As tie_level() for the new triangles alone.
+// As tie_level(), but only for the new triangles; the others' partners are taken over.
 void keep_level(const FitTarget& target, const spatial::Surface& level, const std::vector<std::uint32_t>& old_of,
                 const Known& known, std::span<Correspondence> correspondences, const Task& task) {
   const double area = area_of(level);
@@ -423,7 +423,7 @@ void update_correspondences(const FitTarget& target, const spatial::Surface& lev
       }
     }
   });
-  // The points of the level stay the last of each triangle: those of the original come first, in the order that was.
+  // In each triangle those of the original come first, in the order that they had, and the points of the level last.
   std::vector<Correspondence> loose;
   loose.reserve(correspondences.list.size());
   for (const bool own : {false, true}) {

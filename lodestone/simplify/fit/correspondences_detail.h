@@ -42,8 +42,9 @@ struct Correspondences {
 
 using TrianglePair = std::array<std::uint32_t, 2>;
 
-/// After pairs of triangles have changed within their own outline: what was joined to a pair goes to the nearer of both
-/// anew. O(correspondences + pairs * log triangles).
+/// After pairs of triangles have changed within their common outline: correspondences to a pair go to the nearer of
+/// both. Vertices, lattices and the maximum are not looked at again; find_correspondences() does that.
+/// O(correspondences + pairs * log triangles).
 void update_correspondences(const FitTarget& target, const spatial::Surface& level,
                             const std::vector<TrianglePair>& changed, Correspondences& correspondences,
                             const Task& task);
@@ -54,9 +55,9 @@ struct Known {
   Correspondences correspondences;
 };
 
-/// Finds all partners. With what is known of a level that has triangles in common with this one, only those partners
-/// are looked for that the others could change; the correspondences are the same, and what probe_worst_errors() found
-/// on triangles that are there still is kept. O((points + triangles) log triangles).
+/// Finds all partners. With what is known of a level that has triangles in common with this one, only partners that the
+/// other triangles could change are looked for; the correspondences are the same. What probe_worst_errors() found on
+/// the common triangles is taken over. O((points + triangles) log triangles).
 Correspondences find_correspondences(const FitTarget& target, const spatial::Surface& level, const Task& task,
                                      const Known* known = nullptr);
 

@@ -1,13 +1,18 @@
-// Edges turned over where the level comes nearer to its original by that [hoppe-1993].
+// Edges turned over where that brings the level nearer to its original (edge swaps of [hoppe-1993]).
 //
-// flip_edges() looks at each edge between two triangles and finds by how much turning it lowers the squared distances
-// of both (gain_of()). Not turned are edges where shape_allows() objects (faces that turn away from their old normals
-// or fold onto a neighbour, corners that become much sharper), where the points of the original lose, or where a point
-// of the new edge or triangles would be farther than the worst was. The best come first, no triangle twice a round, and
-// only if the new edge does not exist yet (joined()). The triangles keep their numbers, so what is known of others
-// stays.
+// flip_edges():
+// 1. gain_of() tells for each edge between two triangles (quad_of()) by how much turning it lowers the squared
+//    distances of both triangles' correspondences. An edge has no gain
+//    - if they fall by less than two per cent;
+//    - if the new triangles have a bad shape (shape_allows()): they face away from the old ones, fold onto a neighbour,
+//      or have a much smaller angle;
+//    - if a point of the new edge or triangles is farther from the original than the worst point was.
+// 2. Edges are turned (turn()), the largest gain first. Left out are edges of triangles that have changed or lie next
+//    to one that has, and edges in whose place there would be one that exists already (joined()).
 //
-// Gains are found in parallel, turns made in one order: the same bytes for any number of threads. O(triangles log n).
+// Triangles keep their numbers. Fixed sides (no_flip), and edges whose four vertices are all no_move, are not turned.
+// Gains are found in parallel, edges turned in one order: the same bytes for any number of threads.
+// O(triangles log triangles of the original).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,7 +34,7 @@ constexpr double kWorth = 0.98;   // of the energy before
 constexpr double kFacing = 0.5;   // cosine between new faces and the mean of the old ones
 constexpr double kThinner = 0.5;  // of the smallest angle's sine before, where that is small
 constexpr double kThin = 0.17;    // sine: 10 degrees
-constexpr double kFold = -0.5;    // cosine between a new face and those beside it, where the old were not so
+constexpr double kFold = -0.5;    // cosine between a new face and a neighbour, if both old faces were above it
 constexpr std::size_t kLevelPoints = std::size(kInner);  // the last ones of each triangle are points of the level
 
 // The quadrilateral around an edge: first triangle (a, b, c), second (b, a, d).

@@ -13,10 +13,10 @@ namespace lodestone::simplify::detail {
 /// Low and high vertex of edges that are not turned, sorted.
 using NoFlipEdges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// Turns each edge over that is worth it, no triangle twice: where the squared distances of the correspondences around
-/// fall by two per cent, no worse distance appears, no edge is doubled, and no face turns away, folds or becomes much
-/// thinner. Where all four vertices around are `no_move` an edge stays. `wedges` goes along with level.triangles.
-/// Returns the pairs of triangles that changed. O(triangles log triangles of the target).
+/// Turns edges over where the squared distances of the correspondences around fall by two per cent, no larger distance
+/// appears, no edge is doubled, and no face turns away, folds or becomes much thinner; no triangle twice. Edges whose
+/// four vertices are all `no_move` are not turned. `wedges` goes along with level.triangles. Returns the pairs of
+/// triangles that changed. O(triangles log triangles of the target).
 std::vector<TrianglePair> flip_edges(const FitTarget& target, const Correspondences& correspondences,
                                      const NoFlipEdges& no_flip, std::span<const std::uint8_t> no_move,
                                      spatial::Surface& level, std::vector<Triangle>& wedges, const Task& task);

@@ -1,5 +1,19 @@
-// Method   Gauss-Newton on distances along the correspondences, block-Jacobi preconditioned conjugate gradients
-// Cost     O(correspondences + steps * triangles)
+// One step of all vertices towards where the sum of squared distances of the correspondences is least ([hoppe-1993],
+// with distances both ways; docs/papers/measured-feedback.md, "Moving vertices").
+//
+// solve_displacements(): Gauss and Newton. The partner of each correspondence is fixed, and only the distance along it
+// counts, so the level may slide over the original.
+// 1. element_of(): each triangle's blocks of 3 x 3 for pairs of its corners, and the pull on each corner.
+// 2. The sum over each vertex's triangles (corners_at()), damped by a share of the weights there.
+// 3. Conjugate gradients, preconditioned by the inverse diagonal blocks: at most kSteps steps.
+//
+// apply_displacements(): a Mover takes the moves as far as the surface bears it.
+// 1. settle(): moves of vertices at bad triangles (is_bad(): turned too far, facing away from the original, folded onto
+//    a neighbour) are halved, five times, and then dropped, until no triangle is bad.
+// 2. uncross(): moves at triangles that have come to cross others are dropped; then settle() again, until none cross.
+//
+// Vertices with no_move are not moved. Sums are made vertex by vertex and joined in a fixed order: the same bytes for
+// any number of threads. O(correspondences + steps * triangles) to solve, O(n log n) to apply.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -190,7 +204,7 @@ std::vector<Vec3d> solve_displacements(const spatial::Surface& level, const Corr
 
 namespace {
 
-// Moves vertices by what is left of their moves, which are halved until no face turns or folds.
+// Moves vertices, and reduces the moves until no face turns, folds or crosses another.
 class Mover {
  public:
   Mover(spatial::Surface& level, const CornersAt& around, std::vector<Vec3d> moves, std::span<const Vec3d> facing,

@@ -15,18 +15,18 @@ struct CornersAt {
 };
 CornersAt corners_at(const spatial::Surface& level);
 
-/// Moves of the vertices, one each, zero where `no_move`. Gauss and Newton: each correspondence's partner stays, and
-/// counts along the correspondence alone, so that the level may slide; damped by `damping` times the correspondences'
-/// own weight at each vertex. The system of 3 x 3 blocks is solved by conjugate gradients, preconditioned by its
-/// diagonal blocks. O(correspondences + steps * triangles).
+/// Moves of the vertices, one each, zero where `no_move`. Gauss and Newton: each correspondence's partner is fixed, and
+/// only the distance along the correspondence counts, so that the level may slide; damped by `damping` times the
+/// correspondences' own weight at each vertex. The system of 3 x 3 blocks is solved by conjugate gradients,
+/// preconditioned by its diagonal blocks. O(correspondences + steps * triangles).
 std::vector<Vec3d> solve_displacements(const spatial::Surface& level, const Correspondences& correspondences,
                                        const CornersAt& around, std::span<const std::uint8_t> no_move, double damping,
                                        const Task& task);
 
-/// Takes the moves, halved where a face would turn by more than some 70 degrees or fold onto a neighbour, until none
-/// does; a vertex that does even then stays. The same where a face would turn away from where it should
-/// look (`facing`, one a triangle): small steps must not add up. Vertices of triangles that would come to cross stay.
-/// Positions are rounded to floats relative to `offset`, as a mesh keeps them.
+/// Moves the vertices. Where a face would turn by more than some 70 degrees or fold onto a neighbour, the moves of its
+/// vertices are halved a few times, and dropped if that does not help. The same where a face would turn away from where
+/// it should look (`facing`, one a triangle): small steps must not add up. Vertices of triangles that would come to
+/// cross do not move. Positions are rounded to floats relative to `offset`, as in a mesh.
 void apply_displacements(spatial::Surface& level, const CornersAt& around, std::vector<Vec3d> moves,
                          std::span<const Vec3d> facing, Vec3d offset, const Task& task);
 

@@ -1,17 +1,18 @@
 // More triangles where a level is farthest from its original.
 //
-// The worst triangles first (split_worst()), each gets one of three changes, by where on it the largest distance was
-// found:
-// - near a corner, the vertex itself is pulled half way to the original: pull_in();
-// - near a side, the side is split, and so is the triangle beyond it: split_side();
-// - else a vertex goes into the triangle: split_face().
-// The new vertex goes all the way to the original, or half or a fourth of it, where a face would turn by more than some
-// 70 degrees (looks_alike()) or cross another (crosses()); where that fails, too, the triangle stays. finish() mixes
-// the attributes of the corners and carries over what differs on the original (carry_attributes()).
+// split_worst() goes through the triangles above a share of the maximum, worst first. Splitter::split() makes one of
+// three changes, by where on the triangle the largest distance was found:
+// - near a corner, the vertex itself is pulled half way to the original (pull_in());
+// - near a side, the side is split, and with it the triangle beyond (split_side());
+// - elsewhere, a vertex is added within the triangle (split_face()).
+// A new vertex goes all the way to the original. Where a face would then turn by more than some 70 degrees
+// (looks_alike()) or cross another (crosses()), it goes half or a fourth of the way; if that fails, too, the triangle
+// is left as it is. finish() mixes the attributes of new vertices from the corners' and carries over how the original
+// differs there (carry_attributes()).
 //
-// No triangle is changed twice, so everything is judged by the level as it was. Vertices on seams, between materials or
-// where the surface is not manifold are not pulled, edges of three triangles and more not split. Old vertices keep
-// their numbers, new ones follow. O(n log n).
+// No triangle is changed twice, so all tests look at the level as it was. Vertices on seams, between materials or where
+// the surface is not manifold are not pulled; edges of three triangles and more are not split; nor are triangles around
+// no_split vertices. Old vertices keep their numbers, new ones follow. Single-threaded, in a fixed order. O(n log n).
 #include "lodestone/simplify/fit/split_worst.h"
 
 #include <algorithm>
@@ -74,8 +75,8 @@ class Splitter {
     }
   }
 
-  // How many triangles were added; 1 for a vertex that was pulled. All of the way to the original, or half or a fourth
-  // of it where faces would turn too far; fitting goes on from there.
+  // How many triangles were added; 1 for a vertex that was pulled. The vertex goes all the way to the original, or half
+  // or a fourth of it where faces would turn too far; fitting goes on from there.
   std::size_t split(std::uint32_t t, const TriangleError& worst) {
     for (const double way : {1.0, 0.5, 0.25}) {
       if (touched_[t] != 0) return 0;
@@ -197,7 +198,7 @@ class Splitter {
     if (!mesh_.face_group.empty()) mesh_.face_group.push_back(mesh_.face_group[like]);
   }
 
-  // A vertex that sticks out goes that far.
+  // Moves a vertex that sticks out.
   std::size_t pull_in(std::uint32_t vertex, Vec3d move) {
     if (no_move_[vertex] != 0) return 0;
     const Vec3d place = mesh_.position(vertex) + move;
@@ -239,7 +240,7 @@ class Splitter {
     const auto around = edges_.of(*found);
     if (around.size() == 2 && around[0] == around[1]) return 0;
     for (const std::uint32_t u : around) {
-      if (touched_[u] != 0) return 0;  // it may have been cut and have this side no more
+      if (touched_[u] != 0) return 0;  // it may have been cut and have lost this side
       const std::size_t side = side_between(u, a, b);
       if (!may_cut(u, {side, (side + 1) % 3}, place)) return 0;
     }

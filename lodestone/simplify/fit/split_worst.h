@@ -16,7 +16,7 @@ struct SplitOptions {
   std::size_t most = 0;                  ///< triangles that may be added
   bool keep_borders = false;             ///< open borders are neither split nor pulled
   std::vector<std::uint8_t> no_move{};   ///< one a vertex, non-zero = is not pulled; empty = none
-  std::vector<std::uint8_t> no_split{};  ///< as `no_move`: the triangles around such vertices are not split
+  std::vector<std::uint8_t> no_split{};  ///< the same; non-zero = triangles around it are not split
 };
 
 struct SplitResult {
@@ -25,9 +25,10 @@ struct SplitResult {
 };
 
 /// Adds a vertex where a triangle is worst and puts it on the original there, worst triangles first, no triangle twice:
-/// within the triangle, or on its side where the place is near one. Where it is a vertex, as of those that stick out of
-/// bulges, that goes half way to the original. Attributes are those of the level at the place. No face may turn by more
-/// than some 70 degrees, and no vertex is pulled that lies on a seam or between materials. O(n log n).
+/// within the triangle, or on its side where the place is near one. Where the place is a vertex (one that sticks out of
+/// a bulge, say), that vertex is pulled half way to the original. Attributes are those of the level at the place. No
+/// face may turn by more than some 70 degrees, and no vertex is pulled that lies on a seam or between materials.
+/// O(n log n).
 SplitResult split_worst(const TrackedLevel& level, const SplitOptions& options, const Task& task);
 
 }  // namespace lodestone::simplify

@@ -11,9 +11,8 @@
 
 namespace lodestone::simplify {
 
-/// A mesh's surface with its tree, and points on it that stand for it: its vertices and, for fitting, the centres of
-/// its triangles: vertices that are moved by vertices alone come to fit those and nothing between. Errors of levels are
-/// judged at them.
+/// A mesh's surface with its tree, and points on it at which errors of levels are judged: its vertices, and for fitting
+/// also the centres of its triangles. A level fitted to vertices alone would fit these and nothing between.
 class FitTarget {
  public:
   /// O(n log n). The mesh must outlive it. A mesh without triangles gives an empty target.

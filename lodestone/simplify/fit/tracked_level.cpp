@@ -1,17 +1,19 @@
-// A level that knows how far it is from its original, and can be fitted to it [hoppe-1993].
+// A level that knows how far it is from its original, and can be fitted to it ([hoppe-1993], with distances both ways).
 //
-// Making one finds all correspondences (find_correspondences()) and looks closer where the error is largest
-// (probe_worst_errors()); with a known level only what differs is looked for. worst(), mean() and max() tell what was
-// found, faults() counts triangles that cross or fold, probe_error() takes a place where somebody else has measured
-// more.
+// The constructor finds all correspondences (find_correspondences()) and looks closely where the error is largest
+// (probe_worst_errors()). With a known level, only what differs from it is looked for. mean(), max() and worst() say
+// what was found; faults() counts triangles that cross or fold; probe_error() takes in a place where somebody else has
+// measured more.
 //
-// fit() repeats: turn edges (flip_edges()), solve for displacements of all vertices that lower the sum of squared
-// distances (solve_displacements()), apply them as far as no face turns away (apply_displacements()), find the
-// correspondences again. A round that does not lower the sum is taken back and ends it. Then, where asked, one move
-// along the normals meets the volume (volume_moves()), and attributes follow (carry_attributes()). Vertices of borders,
-// seams, material borders and what is not manifold (fixed_sides()) stay, as do those of FitOptions::no_move.
+// fit() repeats, `solves` times at most:
+// 1. flip_edges(), from the second time on, and not with textures or colours;
+// 2. solve_displacements() and apply_displacements(): vertices moved to where squared distances are least;
+// 3. find_correspondences() again. If the sum of squares has not fallen, the round is taken back and ends the loop.
+// Then, where asked for, one move along the normals restores the volume (volume_moves()), and attributes follow the
+// moved vertices (carry_attributes()).
 //
-// The same bytes for any number of threads. O(solves * n log n).
+// Vertices of borders, seams, borders of materials and non-manifold edges (fixed_sides()) do not move, nor do those of
+// FitOptions::no_move. The same bytes for any number of threads. O(solves * n log n).
 #include "lodestone/simplify/fit/tracked_level.h"
 
 #include <algorithm>
@@ -31,8 +33,8 @@ namespace lodestone::simplify {
 
 namespace {
 
-// With colours or textures vertices hardly slide over the surface: collapses have put them where the texture's course
-// is followed best.
+// With colours or textures vertices must hardly slide over the surface: collapses have put them where they follow the
+// texture best.
 constexpr double kDamping = 0.002, kDampingWithAppearance = 0.5;
 // Of the maximum: triangles above it are looked at closely.
 constexpr double kSuspect = 0.4, kSuspectRoughly = 0.65;
@@ -191,7 +193,7 @@ void TrackedLevel::probe_error(Vec3d place, bool on_original, const Task& task) 
   TriangleError& worst = known.correspondences.worst[on_level.triangle];
   if (found.distance > worst.distance) worst = found;
   known.correspondences.max = std::max(known.correspondences.max, static_cast<double>(distance));
-  // What is kept of a triangle says that it was looked at closely.
+  // This comes first: a triangle with an entry in `close` counts as looked at closely.
   detail::probe_worst_errors(state_->target, known.level, suspect_share(state_->target), known.correspondences, task);
   TriangleError& close = known.correspondences.close[on_level.triangle];
   if (found.distance > close.distance) close = found;

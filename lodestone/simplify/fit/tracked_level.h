@@ -1,5 +1,5 @@
-// TrackedLevel: a level that knows its distance from its original; its vertices moved to where it is nearest to its
-// original, and edges turned over.
+// TrackedLevel: a level that knows its distance from its original. It can be fitted: its vertices are moved to where it
+// is nearest to the original, and edges are turned over.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +41,7 @@ class TrackedLevel {
   std::vector<TriangleError> worst() const;  ///< one a triangle of the mesh
 
   /// Looks at a place (mesh space) on the original, or on the level: worst() and max() rise where it is farther than
-  /// was known. What is found stays while its triangle does. O(triangles).
+  /// was known. What is found is known as long as the triangle exists. O(triangles).
   void probe_error(Vec3d place, bool on_original, const Task& task);
 
   /// What is wrong with a level whatever its distance: pairs of triangles that cross, edges where two triangles lie on
@@ -58,10 +58,9 @@ class TrackedLevel {
   /// The triangles that are measured, in mesh space.
   const spatial::Surface& surface() const;
 
-  /// Moves vertices; borders, seams, borders of materials, and what is not manifold stay. Source: Hoppe et al., "Mesh
-  /// optimization", SIGGRAPH 1993, with distances both ways. Stops early where nothing is gained, so the mean square is
-  /// never above the start's; but where the volume is to be met, which costs a little. O(solves * n log n); where much
-  /// does not move, only what does is measured again.
+  /// Moves vertices, except those on borders, seams, borders of materials and non-manifold edges. Source:
+  /// [hoppe-1993], with distances both ways. Stops where nothing is gained, so the mean square never rises, unless the
+  /// volume is to be met, which costs a little. O(solves * n log n); with no_move, only what moves is measured again.
   void fit(const FitOptions& options, const Task& task);
 
  private:

@@ -1,3 +1,17 @@
+// Growing parts: those that are left of a mesh of many small pieces take over the area of those that have vanished
+// (docs/thin-parts.md, "How parts grow").
+//
+// grow_parts():
+// 1. parts_of_vertices(): which part of the original each vertex of the level belongs to.
+// 2. measure(): area, centroid, principal axes and extent of each part as it is now (part_shape_detail.h).
+// 3. steps_for(): how far each part's fastest end must move for the area that the part stands for. The shape's formula
+//    foretells too little area for round parts, so two corrections follow, by the area that really comes out. No vertex
+//    moves farther than `most`, and a part that would need more than twice as far does not grow.
+// 4. enlarging(): the linear map of each part about its centroid, along its principal axes. It is applied to positions,
+//    and to normals, tangents and morph targets as each of them needs it (change_stream()).
+//
+// Parts that hold a locked vertex (no_prune) do not grow. The topology and the triangles' numbers stay as they are.
+// Single-threaded, in a fixed order. O(mesh).
 #include "lodestone/simplify/prune/grow_parts.h"
 
 #include <algorithm>
@@ -67,8 +81,8 @@ Enlarging enlarging(const PartShape& shape, double step, const Mat4d& metric) {
   return out;
 }
 
-// The move of each part's fastest end. What a shape foretells is a lower bound of the area, so where parts are round
-// it is too much: two corrections by the area that they really get bring it within a hundredth, as a rule.
+// The move of each part's fastest end. A shape's formula is a lower bound of the area, so for round parts the move that
+// it gives is too large. Two corrections by the area that really comes out bring it within a hundredth, as a rule.
 std::vector<double> steps_for(const Mesh& mesh, const std::vector<std::uint32_t>& part_of,
                               const std::vector<PartMeasure>& measures, const std::vector<std::uint8_t>& no_prune,
                               const std::vector<double>& area_of_part, double most, const Mat4d& metric) {
@@ -123,7 +137,7 @@ void change_stream(AttributeStream& stream, const Mesh& mesh, const std::vector<
 void grow_parts(const Mesh& original, const PruneOrder& order, const GrowTargets& targets,
                 const std::vector<std::uint32_t>& origin, Mesh& mesh) {
   const Mat4d& metric = targets.metric;
-  if (metric.determinant3() == 0) return;  // drawn flat: there is no way back from there
+  if (metric.determinant3() == 0) return;  // drawn flat: the metric has no inverse
   const std::vector<std::uint32_t> part_of = parts_of_vertices(original, order.parts, origin, mesh);
   const std::vector<PartMeasure> measures = measure(mesh, part_of, order.parts.count, metric);
   const std::vector<double> steps =

@@ -1,4 +1,4 @@
-// Growing parts: what stays of a mesh of many small pieces takes over the area of what has gone.
+// Growing parts: those that are left of a mesh of many small pieces take over the area of those that have vanished.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,10 @@ struct GrowTargets {
 };
 
 /// Enlarges the parts of `mesh`, a level of `original`, about their centroids until each has the area that it stands
-/// for, or a little more where a part is round. A leaf grows in its
-/// plane, a strut across: vertices move as little as they can, and none farther than `most`. A
-/// part that would have to move more than twice as far is left as it is, as are those that stay (PruneOrder::no_prune).
-/// Normals, tangents and morph targets go along. `origin`: for each triangle the original's that it comes from.
-/// O(mesh).
+/// for, or a little more where a part is round. A leaf grows in its plane, a strut across: vertices move as little as
+/// they can, and none farther than `most`. A part that would have to move more than twice as far is left as it is, and
+/// so are those of PruneOrder::no_prune. Normals, tangents and morph targets go along. `origin`: for each triangle the
+/// original's that it comes from. O(mesh).
 void grow_parts(const Mesh& original, const PruneOrder& order, const GrowTargets& targets,
                 const std::vector<std::uint32_t>& origin, Mesh& mesh);
 

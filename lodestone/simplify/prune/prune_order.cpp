@@ -1,7 +1,19 @@
-// Method   greedy: the part whose vanishing errs least goes first
-// Cost     O(n log n): errors only grow while parts vanish, so an old one is a lower bound; what is nearest to a vertex
-//          is asked again only when that part is gone and the vertex's own part is the cheapest
-// Steps    parts -> tree of parts -> lower bounds -> { the cheapest is looked at anew, and goes or waits }
+// The order in which small parts of a mesh vanish: greedily, always the part whose vanishing errs least
+// (docs/thin-parts.md, "How parts vanish").
+//
+// The error of a part is how far its vertices are from the parts that remain, plus the error of what it stands for
+// already (Part::inherited); with `keep_area`, also how far the part that takes over its area has to grow.
+// The class Greedy does the work:
+// 1. gather_triangles(), list_vertices(), measure_parts(): triangles, vertices, area and shape of each part.
+// 2. fill_queue(): a lower bound for each part, from at most kBoundVertices of its vertices.
+// 3. run(): the cheapest part is looked at anew (error_of()). If it is still the cheapest, it vanishes (vanish()): its
+//    heir (choose_heir()) takes over its area, and the parts nearest to its vertices inherit its error. Otherwise it
+//    goes back into the queue.
+// Errors only grow while parts vanish, so an old error is a lower bound and few parts are looked at often. What is
+// nearest to a vertex is asked again only when that part has vanished (ask()).
+//
+// One part always remains, and so does every part with a no_move vertex. Errors never fall along the steps; of equal
+// ones the lower part goes first: the same for any number of threads. O(n log n) for parts of bounded size.
 #include "lodestone/simplify/prune/prune_order.h"
 
 #include <fmt/format.h>
@@ -67,7 +79,7 @@ class Greedy {
       const Entry cheapest = queue_.top();
       queue_.pop();
       const Entry now{error_of(cheapest.part), cheapest.part};
-      if (task_.cancelled()) return;  // else not all has been asked for what is near
+      if (task_.cancelled()) return;  // near_ is incomplete then
       if (!queue_.empty() && queue_.top() < now) {
         queue_.push(now);
       } else {
@@ -100,7 +112,7 @@ class Greedy {
     });
   }
 
-  // What is left out has no area, and nothing comes near to it.
+  // Triangles that are left out have no area, and no distance is measured to them.
   void gather_triangles(const Mesh& mesh, const std::vector<std::uint32_t>& left_out) {
     triangles_.reserve(mesh.triangles.size());
     std::size_t next = 0;
@@ -152,7 +164,7 @@ class Greedy {
     }
   }
 
-  // Errors of a few vertices each are enough to begin with: most large parts never come to be the cheapest.
+  // Errors of a few vertices each are enough to begin with: most large parts are never the cheapest.
   void fill_queue() {
     near_.resize(positions_.size());
     std::vector<double> bounds(parts_.size(), 0);
